@@ -1,0 +1,1 @@
+"""What the algorithm learns from and is tested on: homes, views of them, and where to start."""

@@ -1,0 +1,23 @@
+"""The ten words of the paper (section IV-A) and the translation from ADE20K's 150.
+
+A label image holds the index of a class in CLASSES: 0 wall, 1 floor, ... 9 other.
+"""
+
+import numpy as np
+
+CLASSES = ("wall", "floor", "ceiling", "bed", "door", "table", "sofa", "refrigerator", "tv", "other")
+WALL, FLOOR, CEILING, BED, DOOR, TABLE, SOFA, REFRIGERATOR, TV, OTHER = range(len(CLASSES))
+N_CLASSES = len(CLASSES)
+
+# One colour a class, the same in every picture, distinct for colour-blind eyes too (after Okabe and Ito 2008,
+# with three greys for the shell of a room).
+PALETTE = np.array([
+    [200, 200, 200], [120, 110, 100], [240, 238, 232], [0, 114, 178], [230, 159, 0],
+    [0, 158, 115], [204, 121, 167], [86, 180, 233], [20, 20, 20], [240, 228, 66],
+], np.uint8)
+
+
+def class_of(name):
+    """Index of a class by its name, without regard to case; a name that is no class is `other`."""
+    name = str(name).strip().lower()
+    return CLASSES.index(name) if name in CLASSES else OTHER

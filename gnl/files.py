@@ -1,0 +1,57 @@
+"""Files that are whole or not there: written to a temporary name beside the target, then renamed.
+
+Arrays travel as .npz without pickles; each file carries a format version and a note of what made it, so that
+a file from elsewhere is refused with one clear line and not half-understood.
+"""
+
+import io
+import json
+import os
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+FORMAT = 1
+
+
+def write_whole(path, data):
+    """Write the bytes `data` to `path`: all of them or, on any interruption, nothing."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; give back the usual rights
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def save_arrays(path, made_by, **arrays):
+    """Save named arrays and `made_by`, a JSON-able description of what produced them, as .npz."""
+    buffer = io.BytesIO()
+    header = json.dumps({"format": FORMAT, "made_by": made_by}, sort_keys=True)
+    np.savez_compressed(buffer, header=np.frombuffer(header.encode(), np.uint8), **arrays)
+    write_whole(path, buffer.getvalue())
+
+
+def load_arrays(path):
+    """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError if it is none."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        header = json.loads(arrays.pop("header").tobytes())
+        version, made_by = header["format"], header["made_by"]
+    except FileNotFoundError:
+        raise ValueError(f"{path}: expected a file of arrays, found nothing") from None
+    except (OSError, ValueError, KeyError, TypeError, EOFError, AttributeError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path}: expected an .npz file of gnl, found something else ({error})") from None
+    if version != FORMAT:
+        raise ValueError(f"{path}: expected format version {FORMAT}, found {version}")
+    return arrays, made_by

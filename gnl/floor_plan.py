@@ -1,0 +1,119 @@
+"""Floor plans: a home as plain JSON, loaded, checked and saved.
+
+    {"name": "...", "units": "m", "wall_height": 2.5,
+     "walls":   [[x0, y0, x1, y1], ...],
+     "doors":   [{"segment": [x0, y0, x1, y1], "height": 2.0, "state": "open"}],
+     "rooms":   [{"type": "bedroom", "polygon": [[x, y], ...]}],
+     "objects": [{"class": "bed", "polygon": [[x, y], ...], "z0": 0.0, "height": 0.5, "color": [r, g, b]}],
+     "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
+
+Metres; `height` is an object's own extent above `z0`. Only `walls` must be there. Keys that are not listed are
+left as they are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
+"""
+
+import json
+import math
+
+from .files import write_whole
+
+WALL_HEIGHT_M = 2.5
+DOOR_HEIGHT_M = 2.0
+LARGEST_HOME_M = 200.0
+
+
+def load(path):
+    """Read and check the floor plan at `path`; returns the plan, a dict as in the head of this module."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            plan = json.load(file)
+    except OSError as error:
+        raise ValueError(f"{path}: expected a floor plan, found no readable file ({error.strerror})") from None
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise ValueError(f"{path}: expected JSON, found something else ({error})") from None
+    return check(plan, path)
+
+
+def save(plan, path):
+    """Write `plan` as JSON, one wall, door, room and object a line."""
+    def rows(value):
+        if not (isinstance(value, list) and value):
+            return json.dumps(value)
+        return "[\n  " + ",\n  ".join(json.dumps(row) for row in value) + "]"
+    text = "{" + ",\n ".join(f"{json.dumps(key)}: {rows(value)}" for key, value in plan.items()) + "}\n"
+    write_whole(path, text.encode())
+
+
+def check(plan, source="floor plan"):
+    """Return `plan` if it is a floor plan as in the head of this module; ValueError naming the fault if not."""
+    def fail(place, expected, found):
+        raise ValueError(f"{source}: {place}: expected {expected}, found {json.dumps(found)[:60]}")
+
+    def number(value, place, at_least=-math.inf):
+        real = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        if not (real and value >= at_least):
+            fail(place, "a number" if at_least == -math.inf else f"a number >= {at_least:g}", value)
+
+    def numbers(value, count, place):
+        if not isinstance(value, list) or len(value) != count:
+            fail(place, f"a list of {count} numbers", value)
+        for item in value:
+            number(item, place)
+
+    def segment(value, place):
+        numbers(value, 4, place)
+        if math.dist(value[:2], value[2:]) < 1e-6:
+            fail(place, "two different end points", value)
+
+    def polygon(value, place):
+        if not isinstance(value, list) or len(value) < 3:
+            fail(place, "a polygon of at least 3 points", value)
+        for point in value:
+            numbers(point, 2, place)
+
+    def colour(value, place):
+        numbers(value, 3, place)
+        if not all(0 <= part <= 255 for part in value):
+            fail(place, "three numbers from 0 to 255", value)
+
+    def items(key):
+        value = plan.get(key, [])
+        if not isinstance(value, list):
+            fail(key, "a list", value)
+        for i, item in enumerate(value):
+            if not isinstance(item, dict):
+                fail(f"{key}[{i}]", "an object", item)
+            yield f"{key}[{i}]", item
+
+    if not isinstance(plan, dict):
+        fail("top level", "an object", plan)
+    if plan.get("units", "m") != "m":
+        fail("units", '"m"', plan["units"])
+    number(plan.get("wall_height", WALL_HEIGHT_M), "wall_height", at_least=0.1)
+    walls = plan.get("walls")
+    if not isinstance(walls, list) or not walls:
+        fail("walls", "a list of at least one wall", walls)
+    for i, wall in enumerate(walls):
+        segment(wall, f"walls[{i}]")
+    for place, door in items("doors"):
+        segment(door.get("segment"), f"{place}.segment")
+        number(door.get("height", DOOR_HEIGHT_M), f"{place}.height", at_least=0.1)
+        if door.get("state") not in (None, "open", "closed"):
+            fail(f"{place}.state", '"open" or "closed"', door["state"])
+    for place, room in items("rooms"):
+        polygon(room.get("polygon"), f"{place}.polygon")
+    for place, thing in items("objects"):
+        polygon(thing.get("polygon"), f"{place}.polygon")
+        number(thing.get("z0", 0.0), f"{place}.z0")
+        number(thing.get("height"), f"{place}.height", at_least=0.0)
+        if not isinstance(thing.get("class"), str):
+            fail(f"{place}.class", "a word", thing.get("class"))
+        if "color" in thing:
+            colour(thing["color"], f"{place}.color")
+    if not isinstance(plan.get("colors", {}), dict):
+        fail("colors", "an object", plan["colors"])
+    for name, value in plan.get("colors", {}).items():
+        colour(value, f"colors.{name}")
+    extent = max(max(wall[k::2]) - min(w[k] for w in walls) for wall in walls for k in (0, 1))
+    if extent > LARGEST_HOME_M:
+        fail("walls", f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
+    return plan

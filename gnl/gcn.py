@@ -1,0 +1,154 @@
+"""The graph convolution network: from a scene graph to scores of the places (section IV-B).
+
+Two graph convolutions, the mean over nodes, a linear map (after the group's code of 2021; sums over neighbours
+normalised as in Kipf and Welling 2017).
+
+    H1 = ReLU(A_hat X W1 + b1)    X one-hot words, so X W1 is a lookup of rows of W1
+    H2 = ReLU(A_hat H1 W2 + b2)   A_hat = D^-1/2 (A + I) D^-1/2
+    g  = mean over nodes of H2,   scores = g W3 + b3
+
+    B graphs   N nodes of all graphs, one behind the other   F hidden features   K places
+"""
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from .files import load_arrays, save_arrays
+from .nn import Adam, linear_backward, linear_forward, relu_backward, relu_forward, softmax_cross_entropy
+from .scene_graph import N_WORDS
+
+HIDDEN = 256  # CHOICE: as in the group's published code
+BATCH, RATE, EPOCHS = 32, 0.001, 100
+
+
+def normalise_adjacency(edges, n_nodes, dtype=np.float32):
+    """Symmetric normalisation of a graph with self-loops (Kipf and Welling 2017, eq. 2), sparse.
+
+        A_hat = D^-1/2 (A + I) D^-1/2,   D = diag(row sums of A + I)
+
+    edges (E, 2), each pair once -> (N, N), symmetric, largest eigenvalue 1; graphs of a batch are its blocks
+    """
+    i, j = edges.T
+    loops = np.arange(n_nodes)
+    rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
+    degree = np.bincount(rows, minlength=n_nodes)
+    order = np.lexsort((columns, rows))
+    rows, columns = rows[order], columns[order]
+    values = (1 / np.sqrt(degree[rows] * degree[columns])).astype(dtype)
+    return csr_matrix((values, columns, np.append(0, np.cumsum(degree))), (n_nodes, n_nodes))
+
+
+def graph_convolution_forward(node_features, adjacency, weight, bias):
+    """A_hat H W + b: each node mixes its neighbours' features, then all nodes are mapped alike.
+
+    node_features (N, F), adjacency (N, N), weight (F, G), bias (G,) -> (N, G); cache: A_hat H, A_hat, W
+    """
+    H, A, W = node_features, adjacency, weight
+    AH = A @ H
+    return AH @ W + bias, (AH, A, W)
+
+
+def graph_convolution_backward(dout, cache):
+    """dout (N, G) -> dH (N, F), dW (F, G), db (G,):  dH = A_hat^T dout W^T,  dW = (A_hat H)^T dout."""
+    AH, A, W = cache
+    return A.T @ (dout @ W.T), AH.T @ dout, dout.sum(0)
+
+
+def mean_forward(node_features, starts):
+    """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero."""
+    count = np.diff(starts)
+    member = csr_matrix((np.repeat(1 / count.clip(1), count).astype(node_features.dtype),
+                         np.arange(len(node_features)), starts), (len(count), len(node_features)))
+    return member @ node_features, (member,)
+
+
+def mean_backward(dout, cache):
+    """Every node of a graph gets the same share: (B, F) -> (N, F)."""
+    member, = cache
+    return member.T @ dout
+
+
+class GCN:
+    """Parameters and passes of the network; `n_words` and `hidden` as one likes."""
+
+    def __init__(self, n_places, rng=None, n_words=N_WORDS, hidden=HIDDEN, dtype=np.float32):
+        rng = rng or np.random.default_rng(0)
+
+        def glorot(n_in, n_out):
+            bound = np.sqrt(6 / (n_in + n_out))
+            return rng.uniform(-bound, bound, (n_in, n_out)).astype(dtype)
+
+        self.params = {"W1": glorot(n_words, hidden), "b1": np.zeros(hidden, dtype),
+                       "W2": glorot(hidden, hidden), "b2": np.zeros(hidden, dtype),
+                       "W3": glorot(hidden, n_places), "b3": np.zeros(n_places, dtype)}
+
+    @property
+    def n_places(self):
+        """K, the number of scores."""
+        return len(self.params["b3"])
+
+    def scores(self, graphs):
+        """Scores of all places for each graph: SceneGraphs -> (B, K)."""
+        return self.forward(graphs)[0]
+
+    def forward(self, graphs):
+        """Scores (B, K) and the cache that `backward` needs."""
+        p = self.params
+        A = normalise_adjacency(graphs.edges, len(graphs.words), p["W1"].dtype)
+        # The words are one-hot: X W1 picks rows, and A_hat (X W1) costs less than (A_hat X) W1.
+        H1, relu1 = relu_forward(A @ p["W1"][graphs.words] + p["b1"])
+        Z2, conv2 = graph_convolution_forward(H1, A, p["W2"], p["b2"])
+        H2, relu2 = relu_forward(Z2)
+        g, mean = mean_forward(H2, graphs.starts)
+        scores, last = linear_forward(g, p["W3"], p["b3"])
+        return scores, (graphs.words, A, relu1, conv2, relu2, mean, last)
+
+    def backward(self, dscores, cache):
+        """Gradients of all parameters from dscores (B, K)."""
+        words, A, relu1, conv2, relu2, mean, last = cache
+        grads = {}
+        dg, grads["W3"], grads["b3"] = linear_backward(dscores, last)
+        dZ2 = relu_backward(mean_backward(dg, mean), relu2)
+        dH1, grads["W2"], grads["b2"] = graph_convolution_backward(dZ2, conv2)
+        dZ1 = relu_backward(dH1, relu1)
+        grads["b1"] = dZ1.sum(0)
+        n_words = len(self.params["W1"])
+        pick = csr_matrix((np.ones(len(words), dZ1.dtype), words, np.arange(len(words) + 1)), (len(words), n_words))
+        grads["W1"] = pick.T @ (A.T @ dZ1)  # X^T: each word gathers the gradients of its nodes
+        return grads
+
+    def save(self, path, made_by):
+        """Write the weights and what made them."""
+        save_arrays(path, made_by, **self.params)
+
+    @classmethod
+    def load(cls, path):
+        """The network of a file of `save`, and what made it."""
+        params, made_by = load_arrays(path)
+        wanted = ("W1", "b1", "W2", "b2", "W3", "b3")
+        if set(params) != set(wanted):
+            raise ValueError(f"{path}: expected the arrays {', '.join(wanted)}, found {', '.join(sorted(params))}")
+        gcn = cls(len(params["b3"]), n_words=len(params["W1"]), hidden=len(params["b1"]))
+        gcn.params = params
+        return gcn, made_by
+
+
+def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progress=None):
+    """Fit `gcn` in place to graphs of known place by softmax cross-entropy and Adam.
+
+    graphs : SceneGraphs of n views; places (n,) int; progress(share done, loss) is called after each epoch
+    """
+    if len(graphs) != len(places) or not len(places):
+        raise ValueError(f"places: expected one for each of the {len(graphs)} graphs, found {len(places)}")
+    places = np.asarray(places)
+    adam = Adam(gcn.params, rate)
+    for epoch in range(epochs):
+        order, losses = rng.permutation(len(places)), []
+        for i in range(0, len(order), batch):
+            picked = order[i:i + batch]
+            scores, cache = gcn.forward(graphs.pick(picked))
+            loss, dscores = softmax_cross_entropy(scores, places[picked])
+            adam.step(gcn.backward(dscores, cache))
+            losses.append(loss)
+        if progress:
+            progress((epoch + 1) / epochs, np.mean(losses))

@@ -1,0 +1,163 @@
+"""A KD-tree: exact nearest neighbours among any vectors, growing one point or many at a time (Bentley 1975).
+
+Nearest-neighbour Q-learning asks of every view: which of my memories are most like this? A KD-tree answers
+without looking at all of them. It cuts space in two, each half again, and so on, and never opens a box that
+lies farther away than what it has found already. In 2-D that skips nearly everything. In 300-D no box is far
+from anything, and brute force wins; `RankIndex` shows what it takes to do better there.
+
+symbol     shape      meaning
+points     (n, dim)   all stored vectors in order of birth, float32; a point's id is its row
+queries    (B, dim)   vectors whose neighbours are wanted
+low, high  (dim,)     corners of the smallest box around the points of a node
+k          int        neighbours wanted
+n_first    int        look at the first n_first points only: the store as it was when it held so many
+"""
+
+from heapq import heappop, heappush
+from itertools import count
+
+import numpy as np
+
+LEAF_SIZE = 32  # points; to look at so few at once costs hardly more than to choose between two boxes
+
+
+class KDTree:
+    """Exact nearest neighbours. Points may arrive in any order; if sorted, the tree grows deep and slow."""
+
+    def __init__(self, dim):
+        dim = check_count("dim", dim, 1)
+        self._points = np.empty((LEAF_SIZE, dim), np.float32)  # doubled when full: the first n rows count
+        self._n = 0
+        self._root = _Node(dim)
+
+    def __len__(self):
+        return self._n
+
+    @property
+    def points(self):
+        """All stored vectors, (n, dim) float32, in order of birth; a copy."""
+        return self._points[:self._n].copy()
+
+    def add(self, points):
+        """Store points (n, dim); returns their ids (n,), counted on from the points already there."""
+        points = check_points(points, self._points.shape[1])
+        ids = np.arange(self._n, self._n + len(points))
+        self._n += len(points)
+        while self._n > len(self._points):
+            self._points = np.concatenate([self._points, np.empty_like(self._points)])
+        self._points[ids] = points
+
+        arrivals = [(self._root, ids)] if len(ids) else []
+        while arrivals:  # a list, not recursion: the tree may be deeper than Python's stack
+            node, new = arrivals.pop()
+            node.enclose(self._points[new])
+            if node.is_leaf:
+                node.ids = np.concatenate([node.ids, new])
+                if len(node.ids) <= LEAF_SIZE or (node.low == node.high).all():  # equal points: no way to cut
+                    continue
+                new = node.split(self._points)
+            on_left = self._points[new, node.axis] <= node.cut
+            halves = (node.left, new[on_left]), (node.right, new[~on_left])
+            arrivals += [(child, half) for child, half in halves if len(half)]
+        return ids
+
+    def query(self, points, k, n_first=None):
+        """The k nearest stored points of each query, nearest first, ties to the older point.
+
+        points  : (B, dim) queries
+        returns : distances (B, k) float64, ids (B, k); inf and -1 where there are fewer than k points
+        """
+        queries = check_points(points, self._points.shape[1]).astype(float)
+        k = check_count("k", k, 1)
+        n_first = self._n if n_first is None else check_count("n_first", n_first, 0, self._n)
+        return pack_answers([self._nearest(query, k, n_first) for query in queries], k)
+
+    def _nearest(self, query, k, n_first):
+        """Best-first search for one query (dim,): open the nearest box, until it is beyond the k-th best."""
+        best = []  # the k nearest so far, ascending: (distance, id)
+        births = count()  # settles ties in the heap, which cannot compare nodes
+        boxes = [(0.0, next(births), self._root)]
+        while boxes:
+            distance, _, node = heappop(boxes)
+            if len(best) == k and distance > best[-1][0]:  # at equal distance there may be an older point
+                break
+            if node.is_leaf:
+                ids = node.ids[node.ids < n_first]
+                distances = lengths(self._points[ids] - query)
+                best = sorted(best + list(zip(distances.tolist(), ids.tolist(), strict=True)))[:k]
+            else:
+                for child in (node.left, node.right):
+                    heappush(boxes, (child.distance_to(query), next(births), child))
+        return best
+
+
+class _Node:
+    """A box of space: a leaf, which holds ids, or a cut into `left` (x[axis] <= cut) and `right`."""
+
+    def __init__(self, dim):
+        self.low = np.full(dim, np.inf, np.float32)
+        self.high = np.full(dim, -np.inf, np.float32)
+        self.ids = np.empty(0, int)
+        self.axis = self.cut = self.left = self.right = None
+
+    @property
+    def is_leaf(self):
+        return self.axis is None
+
+    def enclose(self, points):
+        """Widen the box to hold points (n, dim) too."""
+        self.low = np.minimum(self.low, points.min(axis=0))
+        self.high = np.maximum(self.high, points.max(axis=0))
+
+    def distance_to(self, query):
+        """Distance from query (dim,) to the box: to the query clipped to the box, which is its nearest point.
+
+        Never above the distance to a point in the box, not even by rounding: no coordinate differs by more,
+        and `lengths` rounds both in the same order, monotonically.
+        """
+        return lengths((query.clip(self.low, self.high) - query)[None])[0]
+
+    def split(self, points):
+        """Cut a leaf across its widest side at the median; returns its ids, which are the children's now.
+
+        Among ties the cut is the greatest value below the median, if there is one: no half is ever empty.
+        """
+        self.axis = int(np.argmax(self.high.astype(float) - self.low))
+        values = points[self.ids, self.axis]
+        median = np.sort(values)[len(values) // 2]
+        self.cut = values[values < median].max(initial=self.low[self.axis])
+        self.left, self.right = _Node(len(self.low)), _Node(len(self.low))
+        ids, self.ids = self.ids, None
+        return ids
+
+
+# What all indexes do alike.
+
+def lengths(differences):
+    """Euclidean lengths of the rows of (n, dim) -> (n,)."""
+    return np.sqrt((differences ** 2).sum(axis=1))
+
+
+def pack_answers(answers, k):
+    """Of each query the (distance, id) pairs found -> distances (B, k), ids (B, k), filled with inf, -1."""
+    rows = [pairs + [(np.inf, -1)] * (k - len(pairs)) for pairs in answers]
+    distances = np.array([[distance for distance, _ in row] for row in rows], float)
+    return distances.reshape(-1, k), np.array([[i for _, i in row] for row in rows], int).reshape(-1, k)
+
+
+def check_points(points, dim):
+    """The points as float32 (n, dim), or a ValueError that says what is wrong with them."""
+    with np.errstate(over="ignore"):  # what is too great for float32 becomes inf, and is refused below
+        points = np.asarray(points, np.float32)
+    if points.ndim != 2 or points.shape[1] != dim:
+        raise ValueError(f"points: expected shape (n, {dim}), found {points.shape}")
+    if not np.isfinite(points).all():
+        raise ValueError(f"points: expected finite float32 values, found {points[~np.isfinite(points)][0]}")
+    return points
+
+
+def check_count(name, value, least, most=np.inf):
+    """A whole number from least to most, or a ValueError."""
+    if not isinstance(value, int | np.integer) or not least <= value <= most:
+        raise ValueError(f"{name}: expected a whole number from {least} to {most}, found {value!r}")
+    return int(value)

@@ -1,0 +1,164 @@
+"""Layers as pairs of pure functions, the loss, Adam, and the check that every gradient must pass.
+
+    forward(x, ...) -> out, cache        cache: the tuple that backward needs, never written into
+    backward(dout, cache) -> dx, ...     d<name> is the gradient of the loss by <name>, of the same shape
+
+    B batch   H x W image, row 0 on top   C channels in   F channels out   K classes
+"""
+
+import numpy as np
+
+
+def conv_forward(x, w, b, stride=1):
+    """3 x 3 convolution with a border of zeros: every output pixel is a linear map of nine input pixels.
+
+        out[i, j] = b + sum over u, v in 0..2 of x[stride i + u - 1, stride j + v - 1] w[u, v]
+
+    x (B, H, W, C), w (3, 3, C, F), b (F,) -> out (B, H / stride, W / stride, F); cache: patches, w, stride
+    """
+    B, H, W, C = x.shape
+    padded = np.zeros((B, H + 2, W + 2, C), x.dtype)
+    padded[:, 1:-1, 1:-1] = x
+    # The three pixels of a patch's row lie side by side: 3 C numbers in one piece.
+    s0, s1, s2, s3 = padded.strides
+    h, k = H // stride, W // stride
+    rows = np.lib.stride_tricks.as_strided(padded, (B, h, k, 3, 3 * C), (s0, stride * s1, stride * s2, s1, s3))
+    patches = rows.reshape(B * h * k, 9 * C)
+    out = patches @ w.reshape(9 * C, -1)
+    out += b
+    return out.reshape(B, h, k, -1), (patches, w, stride)
+
+
+def conv_backward(dout, cache):
+    """dout (B, h, k, F) -> dx (B, H, W, C), dw, db: each patch gets its share, and patches overlap."""
+    _, w, stride = cache
+    (B, h, k, F), C = dout.shape, w.shape[2]
+    dpatches = (dout.reshape(-1, F) @ w.reshape(-1, F).T).reshape(B, h, k, 3, 3, C)
+    dpadded = np.zeros((B, stride * h + 2, stride * k + 2, C), dout.dtype)
+    for u in range(3):
+        for v in range(3):
+            dpadded[:, u:u + stride * h:stride, v:v + stride * k:stride] += dpatches[:, :, :, u, v]
+    return dpadded[:, 1:-1, 1:-1], *conv_backward_weights(dout, cache)
+
+
+def conv_backward_weights(dout, cache):
+    """dw (3, 3, C, F) and db (F,) alone, for a first layer: no one asks for the gradient of the image."""
+    patches, w, _ = cache
+    dflat = dout.reshape(-1, w.shape[3])
+    return (patches.T @ dflat).reshape(w.shape), dflat.sum(0)
+
+
+def linear_forward(x, w, b):
+    """The same linear map at every pixel (a 1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F)."""
+    out = x.reshape(-1, w.shape[0]) @ w  # one product for all pixels, not one for each row of the image
+    out += b
+    return out.reshape(*x.shape[:-1], -1), (x, w)
+
+
+def linear_backward(dout, cache):
+    """dout (..., F) -> dx (..., C), dw (C, F), db (F,)."""
+    x, w = cache
+    dflat = dout.reshape(-1, w.shape[1])
+    return (dflat @ w.T).reshape(x.shape), x.reshape(-1, w.shape[0]).T @ dflat, dflat.sum(0)
+
+
+def relu_forward(x):
+    """max(x, 0); cache: the output, which is positive just where the input was."""
+    out = np.maximum(x, 0)
+    return out, (out,)
+
+
+def relu_backward(dout, cache):
+    """The gradient passes where the input was positive."""
+    out, = cache
+    return dout * (out > 0)
+
+
+def pool_forward(x, grid):
+    """Mean over each cell of a grid x grid partition: x (B, H, W, C) -> (B, grid, grid, C)."""
+    B, H, W, C = x.shape
+    cells = x.reshape(B, grid, H // grid, grid, W // grid, C)
+    return cells.mean((2, 4)), (x.shape, grid)
+
+
+def pool_backward(dout, cache):
+    """Every pixel of a cell gets the same share."""
+    (B, H, W, C), grid = cache
+    share = dout / (H // grid * (W // grid))
+    return upsample_forward(share, H // grid)[0]
+
+
+def upsample_forward(x, factor):
+    """Each pixel becomes factor x factor equal pixels: (B, H, W, C) -> (B, factor H, factor W, C)."""
+    B, H, W, C = x.shape
+    wide = np.broadcast_to(x[:, :, None, :, None], (B, H, factor, W, factor, C))
+    return wide.reshape(B, factor * H, factor * W, C), (factor,)
+
+
+def upsample_backward(dout, cache):
+    """A pixel gets the sum of what its copies get."""
+    factor, = cache
+    B, H, W, C = dout.shape
+    return dout.reshape(B, H // factor, factor, W // factor, factor, C).sum((2, 4))
+
+
+def softmax(scores):
+    """Probabilities from scores, along the last axis; shifted by the greatest so that nothing overflows."""
+    e = np.exp(scores - scores.max(-1, keepdims=True))
+    return e / e.sum(-1, keepdims=True)
+
+
+def softmax_cross_entropy(scores, labels):
+    """Mean of -log p[label] and its gradient.
+
+        p = softmax(scores),   dscores = (p - onehot(labels)) / n
+
+    scores (..., K), labels (...) int -> loss, dscores (..., K)
+    """
+    K, n = scores.shape[-1], labels.size
+    z = np.ascontiguousarray(scores.reshape(n, K).T)  # classes first: sums over K then run along memory
+    e = np.exp(z - z.max(0))
+    p = e / e.sum(0)
+    right = labels.ravel(), np.arange(n)
+    loss = -np.log(p[right] + np.finfo(p.dtype).tiny).mean()
+    p[right] -= 1
+    return loss, (p.T / p.dtype.type(n)).reshape(scores.shape)
+
+
+class Adam:
+    """Adam (Kingma and Ba 2015): steps scaled by running means of each gradient and of its square."""
+
+    def __init__(self, params, rate=0.001, beta1=0.9, beta2=0.999, eps=1e-8):
+        self.params, self.rate, self.beta1, self.beta2, self.eps, self.t = params, rate, beta1, beta2, eps, 0
+        self.m = {name: np.zeros_like(p) for name, p in params.items()}
+        self.v = {name: np.zeros_like(p) for name, p in params.items()}
+
+    def step(self, grads, rate=None):
+        """Move `params` in place against `grads`, a dict of the same names."""
+        self.t += 1
+        rate = (self.rate if rate is None else rate) * np.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
+        for name, g in grads.items():
+            m, v = self.m[name], self.v[name]
+            m += (1 - self.beta1) * (g - m)
+            v += (1 - self.beta2) * (g * g - v)
+            self.params[name] -= rate * m / (np.sqrt(v) + self.eps)
+
+
+def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):
+    """Largest relative difference between dx and central differences of the scalar f, at random entries of x.
+
+        df/dx_i = (f(x + eps e_i) - f(x - eps e_i)) / (2 eps)
+
+    f : function of no argument that reads x, a float64 array which is nudged in place and restored
+    """
+    worst = 0.0
+    for i in rng.choice(x.size, min(probes, x.size), replace=False):
+        kept = x.flat[i]
+        x.flat[i] = kept + eps
+        up = f()
+        x.flat[i] = kept - eps
+        down = f()
+        x.flat[i] = kept
+        numeric, analytic = (up - down) / (2 * eps), dx.flat[i]
+        worst = max(worst, abs(numeric - analytic) / max(1e-6, abs(numeric) + abs(analytic)))
+    return worst

@@ -1,0 +1,52 @@
+"""Places: the paper's partition of location and bearing into classes (section IV-B).
+
+A home is cut into cells of 2 m x 2 m x 30 degrees; each is one class that the classifier learns to name.
+
+    K = nx * ny * 12                 number of places
+    place = (ix * ny + iy) * 12 + ib
+"""
+
+import numpy as np
+
+CELL_M = 2.0
+N_BEARINGS = 12
+
+
+class PlaceGrid:
+    """The grid of place classes over a world's bounds (x0, y0, x1, y1)."""
+
+    def __init__(self, world, cell_m=CELL_M, n_bearings=N_BEARINGS):
+        x0, y0, x1, y1 = world.bounds
+        self.origin = float(x0), float(y0)
+        self.cell_m, self.n_bearings = cell_m, n_bearings
+        # A home of exactly 12 m has six columns, not seven: forgive a rounding error at the far wall.
+        self.nx = max(1, int(np.ceil((x1 - x0) / cell_m - 1e-6)))
+        self.ny = max(1, int(np.ceil((y1 - y0) / cell_m - 1e-6)))
+        self.n_places = self.nx * self.ny * n_bearings
+
+    def place_of(self, poses):
+        """Place of each pose: (..., 3) -> (...,) int. A pose off the grid gets the nearest cell of the rim."""
+        return self.place_of_xyt(*np.moveaxis(np.asarray(poses), -1, 0))
+
+    def place_of_xyt(self, x, y, theta):
+        """The same from coordinates in arrays of their own."""
+        ix = ((x - self.origin[0]) * (1 / self.cell_m)).clip(0, self.nx - 1).astype(np.int32)
+        iy = ((y - self.origin[1]) * (1 / self.cell_m)).clip(0, self.ny - 1).astype(np.int32)
+        ib = np.floor(theta * (self.n_bearings / (2 * np.pi))).astype(np.int32) % self.n_bearings
+        return (ix * self.ny + iy) * self.n_bearings + ib
+
+    def corner_of(self, places):
+        """Lowest pose (x, y, theta) of each place's cell: (...,) -> (..., 3); theta in [0, 2 pi)."""
+        cell, ib = np.divmod(places, self.n_bearings)
+        ix, iy = np.divmod(cell, self.ny)
+        x, y = self.origin[0] + ix * self.cell_m, self.origin[1] + iy * self.cell_m
+        return np.stack([x, y, ib * (2 * np.pi / self.n_bearings)], -1)
+
+    def location_of(self, places):
+        """Location class of each place, its bearing forgotten: ix * ny + iy."""
+        return np.asarray(places) // self.n_bearings
+
+
+def wrap_angle(theta):
+    """Angle(s) in (-pi, pi]."""
+    return -((np.pi - np.asarray(theta)) % (2 * np.pi) - np.pi)

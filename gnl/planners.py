@@ -1,0 +1,57 @@
+"""Planners: who chooses the next action.
+
+A planner is a function plan(step, states, rng) -> actions (B,): states (B, K) are the reciprocal ranks of the
+latest views, `rng` is the exploration stream. It answers None to end the episode.
+"""
+
+import itertools
+
+import numpy as np
+
+from .robot import N_ACTIONS
+
+
+def stay(_step, _states, _rng):
+    """Nobody: the first view is all there is (the paper's single-view method, SV)."""
+    return
+
+
+def chance(_step, states, rng):
+    """Each action with the same probability (the paper's passive multi-view method, MV)."""
+    return rng.integers(N_ACTIONS, size=len(states))
+
+
+def scan(sequence):
+    """The same actions in every episode, whatever there is to see."""
+    def plan(step, states, _rng):
+        return np.full(len(states), sequence[step])
+    return plan
+
+
+def greedy(nnql):
+    """The action of the greatest Q-value (Ours); equal values are drawn among by chance."""
+    def plan(_step, states, rng):
+        return best_actions(nnql.q_values(states), rng)
+    return plan
+
+
+def explore(nnql, epsilon):
+    """Greedy, but by chance in a share epsilon (B,) of the cases: how NNQL gathers experience."""
+    def plan(_step, states, rng):
+        best, any_, by_chance = best_actions(nnql.q_values(states), rng), *_draws(rng, len(states))
+        return np.where(by_chance < epsilon, any_, best)
+    return plan
+
+
+def best_actions(q, rng):
+    """Arg max over actions, ties drawn: q (B, A) -> (B,)."""
+    return np.where(q == q.max(1, keepdims=True), rng.random(q.shape), -1).argmax(1)
+
+
+def all_sequences(length):
+    """Every sequence of `length` actions: (A ** length, length)."""
+    return np.array(list(itertools.product(range(N_ACTIONS), repeat=length)))
+
+
+def _draws(rng, n):
+    return rng.integers(N_ACTIONS, size=n), rng.random(n)

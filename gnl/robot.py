@@ -1,0 +1,70 @@
+"""The robot: a disc that turns, goes forward and stops where it touches something.
+
+Contact is pymunk's own swept query: how far a disc gets along a line before it meets a shape.
+
+    action 0 turn left, 1 turn right, 2 forward
+    pose (x [m], y [m], theta [rad]);  odometry (forward [m], turn [rad]): what the wheels report
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from .places import wrap_angle
+from .world import ROBOT_RADIUS_M
+
+ACTIONS = ("left", "right", "forward")
+LEFT, RIGHT, FORWARD = range(len(ACTIONS))
+N_ACTIONS = len(ACTIONS)
+SKIN_M = 1e-3  # a robot at rest keeps this from what stopped it, or the next query would start in contact
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How the robot moves; the noise is that of its odometry."""
+
+    turn_rad: float = np.pi / 6  # CHOICE: one bearing bin a turn
+    forward_m: float = 0.5  # CHOICE: Habitat's 0.25 m hardly leaves a 2 m cell in four steps
+    std_m: float = 0.03  # CHOICE: the paper names no motion noise
+    std_rad: float = 0.03
+
+
+class Robot:
+    """A home's obstacles in a pymunk space, and a disc that moves among them."""
+
+    def __init__(self, world, motion=Motion(), radius_m=ROBOT_RADIUS_M):  # noqa: B008 (frozen)
+        self.motion, self.radius_m = motion, radius_m
+        self.space = pymunk.Space()
+        for (x, y), (a, b), angle in zip(world.centre[world.blocks], world.half[world.blocks],
+                                         world.angle[world.blocks], strict=True):
+            turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
+            corners = [(a, b), (-a, b), (-a, -b), (a, -b)]
+            self.space.add(pymunk.Poly(self.space.static_body, corners, turn))
+
+    def step(self, poses, actions, rng):
+        """Act once with each robot: poses (B, 3), actions (B,) -> poses (B, 3), odometry (B, 2), bumped (B,) bool.
+
+        Each robot moves exactly as asked or until it touches; odometry errs by `motion.std_m` and `std_rad`.
+        """
+        poses, actions, m = np.array(poses, float), np.asarray(actions), self.motion
+        turn = np.choose(actions, [m.turn_rad, -m.turn_rad, 0.0])
+        forward = np.where(actions == FORWARD, m.forward_m, 0.0)
+        bumped = np.zeros(len(poses), bool)
+        for i in np.flatnonzero(actions == FORWARD):
+            forward[i], bumped[i] = self.advance(poses[i], m.forward_m)
+        poses[:, 0] += forward * np.cos(poses[:, 2])
+        poses[:, 1] += forward * np.sin(poses[:, 2])
+        poses[:, 2] = wrap_angle(poses[:, 2] + turn)
+        noise = rng.standard_normal((len(poses), 2)) * [m.std_m, m.std_rad]
+        return poses, np.stack([forward, turn], 1) + noise, bumped
+
+    def advance(self, pose, distance_m):
+        """How far a disc at `pose` gets straight ahead, at most `distance_m`, and whether something stopped it."""
+        x, y, theta = pose
+        reach = distance_m + SKIN_M
+        target = (x + reach * np.cos(theta), y + reach * np.sin(theta))
+        hit = self.space.segment_query_first((x, y), target, self.radius_m, pymunk.ShapeFilter())
+        if hit is None:
+            return distance_m, False
+        return max(0.0, hit.alpha * reach - SKIN_M), True

@@ -1,0 +1,143 @@
+"""The scene graph: from labels to a graph of semantic words, exactly by the paper's rules (section IV-A).
+
+A node is a part region: connected pixels of one class, at least 5000 of the 512 x 512. Its word joins what it is,
+how large its box is and where in the image the box's centre lies. Boxes that overlap or are at most 20 px apart
+make an edge.
+
+    word = (class * 3 + size) * 9 + location,  0..269        location = row * 3 + column of a 3 x 3 grid
+    size: S < S_o small 0, S_o <= S < 6 S_o medium 1, else large 2;  S area of the box, S_o a 16th of the image's
+
+    B graphs   N nodes of all graphs, one graph after the other   E edges
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from .classes import N_CLASSES
+
+VIEW_PX = 512  # all thresholds are stated in pixels of this view
+SMALLEST_REGION_PX = 5000
+FARTHEST_EDGE_PX = 20.0
+SIZE_UNIT_PX = VIEW_PX * VIEW_PX / 16  # S_o
+N_SIZES, GRID = 3, 3
+N_WORDS = N_CLASSES * N_SIZES * GRID * GRID
+
+
+@dataclass(frozen=True)
+class SceneGraphs:
+    """The graphs of B views, one behind the other; a batch of one is a graph."""
+
+    words: np.ndarray  # (N,) int
+    boxes: np.ndarray  # (N, 4) px, half-open (x0, y0, x1, y1)
+    edges: np.ndarray  # (E, 2) int, nodes i < j
+    starts: np.ndarray  # (B + 1,) int: graph b holds the nodes starts[b]:starts[b + 1]
+
+    def __len__(self):
+        return len(self.starts) - 1
+
+    def __getitem__(self, index):
+        """Graph `index` alone."""
+        return self.pick([range(len(self))[index]])
+
+    def pick(self, chosen):
+        """The graphs `chosen` (n,), in that order, repeats allowed."""
+        chosen = np.asarray(chosen)
+        starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
+        first_edge = np.searchsorted(self.edges[:, 0], self.starts)  # edges are sorted by their first node
+        edge_starts, edges = _spread(first_edge[chosen], first_edge[chosen + 1])
+        shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))
+        return SceneGraphs(self.words[nodes], self.boxes[nodes], self.edges[edges] + shift[:, None], starts)
+
+
+def _spread(begin, end):
+    """Ranges [begin, end) one behind the other: where each starts in the result (n + 1,), and the result."""
+    count = end - begin
+    starts = np.append(0, np.cumsum(count))
+    return starts, np.arange(starts[-1]) + np.repeat(begin - starts[:-1], count)
+
+
+def scene_graph(labels):
+    """Scene graphs of label images: (H, W) or (B, H, W) ints in 0..9, of any size -> SceneGraphs.
+
+    Images of other sizes are measured in pixels of the 512 x 512 view: x * 512 / W, y * 512 / H.
+    """
+    labels = np.asarray(labels)
+    if labels.ndim not in (2, 3) or not np.issubdtype(labels.dtype, np.integer) or 0 in labels.shape[-2:]:
+        raise ValueError(f"labels: expected integers (H, W) or (B, H, W), found {labels.dtype} {labels.shape}")
+    if labels.size and not (0 <= labels.min() and labels.max() < N_CLASSES):
+        raise ValueError(f"labels: expected 0..{N_CLASSES - 1}, found {labels.min()}..{labels.max()}")
+    labels = labels if labels.ndim == 3 else labels[None]
+    view, label, area, boxes = regions(labels)
+    scale = np.array([VIEW_PX / labels.shape[2], VIEW_PX / labels.shape[1]] * 2)
+    kept = area * scale[0] * scale[1] >= SMALLEST_REGION_PX
+    view, boxes = view[kept], boxes[kept] * scale
+    starts = np.searchsorted(view, np.arange(len(labels) + 1))
+    return SceneGraphs(word_of(label[kept], boxes), boxes, edges_of(boxes, starts), starts)
+
+
+def regions(labels):
+    """Part regions, 4-connected pixels of one class: labels (B, H, W) -> view, class, area, boxes in pixels.
+
+    Columns are cut into runs of one class; two runs of neighbouring columns that share a row and a class belong
+    together. Regions come ordered by view, then by their first pixel, column by column.
+    """
+    B, H, W = labels.shape
+    columns = np.ascontiguousarray(labels.transpose(0, 2, 1)).ravel()  # one column below the other
+    begins = np.ones(len(columns), bool)
+    np.not_equal(columns[1:], columns[:-1], out=begins[1:])
+    begins[::H] = True
+    begin = np.flatnonzero(begins)
+    end = np.append(begin[1:], len(columns))
+    label = columns[begin]
+
+    # A run [begin, end) touches the runs of the next column that overlap [begin + H, end + H).
+    first = np.searchsorted(end, begin + H, side="right")
+    last = np.searchsorted(begin, end + H)
+    column = begin // H
+    count = np.where(column % W < W - 1, last - first, 0)
+    left = np.repeat(np.arange(len(begin)), count)
+    _, right = _spread(first, first + count)
+    same = label[left] == label[right]
+    links = coo_matrix((np.ones(same.sum(), bool), (left[same], right[same])), (len(begin), len(begin)))
+    n, region = connected_components(links, directed=False)
+
+    x, y0 = column % W, begin % H
+    y1 = y0 + end - begin
+    order = np.argsort(region, kind="stable")
+    cut = np.searchsorted(region[order], np.arange(n))
+    low, high, total = ((lambda a, f=f: f.reduceat(a[order], cut)) for f in (np.minimum, np.maximum, np.add))
+    boxes = np.stack([low(x), low(y0), high(x + 1), high(y1)], 1)
+    return column[order[cut]] // W, label[order[cut]].astype(int), total(y1 - y0), boxes
+
+
+def word_of(label, boxes):
+    """Word of each region: class (N,), boxes (N, 4) px of the 512 x 512 view -> (N,) in 0..269."""
+    x0, y0, x1, y1 = boxes.T
+    S = (x1 - x0) * (y1 - y0)
+    size = (S >= SIZE_UNIT_PX).astype(int) + (S >= 6 * SIZE_UNIT_PX)
+    column = ((x0 + x1) * GRID // (2 * VIEW_PX)).astype(int)
+    row = ((y0 + y1) * GRID // (2 * VIEW_PX)).astype(int)
+    return (label * N_SIZES + size) * GRID * GRID + row * GRID + column
+
+
+def edges_of(boxes, starts):
+    """Pairs of nodes of one graph whose boxes overlap or lie at most 20 px apart: (E, 2), i < j, sorted."""
+    size = np.diff(starts)
+    # Each node with those that follow it in its graph.
+    following = np.repeat(starts[1:], size) - 1 - np.arange(len(boxes))
+    i = np.repeat(np.arange(len(boxes)), following)
+    _, j = _spread(np.arange(1, len(boxes) + 1), np.arange(1, len(boxes) + 1) + following)
+    a, b = boxes[i], boxes[j]
+    gap = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:]).clip(0)  # (x, y), 0 where they overlap
+    near = (gap ** 2).sum(1) <= FARTHEST_EDGE_PX ** 2
+    return np.stack([i[near], j[near]], 1)
+
+
+def words_in_words(words):
+    """The words spelled out: (N,) -> list of (class, size, location), each 0-based."""
+    rest, location = np.divmod(words, GRID * GRID)
+    label, size = np.divmod(rest, N_SIZES)
+    return list(zip(label.tolist(), size.tolist(), location.tolist(), strict=True))

@@ -1,0 +1,191 @@
+"""The segmentation net: from colours to labels (section IV-A: ResNet with a pyramid pooling module, in miniature).
+
+The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the view at stride 8 and predicts each of
+its 64 x 64 pixels.
+
+    stem    64 x 64 x 4  -> 32 x 32 x 16     conv / 2, ReLU
+    down    32 x 32 x 16 -> 16 x 16 x 32     conv / 2, ReLU
+    block   16 x 16 x 32, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
+    pyramid every pixel hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
+    head    upsampled to 32 x 32 and joined with the stem; 2 x 2 sub-pixels of 10 scores each -> 64 x 64 x 10
+"""
+
+import numpy as np
+
+from .classes import N_CLASSES
+from .files import load_arrays, save_arrays
+from .nn import (
+    Adam,
+    conv_backward,
+    conv_backward_weights,
+    conv_forward,
+    linear_backward,
+    linear_forward,
+    pool_backward,
+    pool_forward,
+    relu_backward,
+    relu_forward,
+    softmax_cross_entropy,
+    upsample_backward,
+    upsample_forward,
+)
+
+SIZE_PX = 64
+STEM, WIDTH, BLOCKS, GRIDS = 16, 32, 2, (1, 2, 4)
+
+
+def new_params(rng, dtype=np.float32):
+    """Random weights (He et al. 2015), zero biases; the last map of a residual block starts at zero."""
+    params = {}
+
+    def layer(name, *shape, gain=2.0):
+        params[f"{name}.w"] = (np.sqrt(gain / np.prod(shape[:-1])) * rng.standard_normal(shape)).astype(dtype)
+        params[f"{name}.b"] = np.zeros(shape[-1], dtype)
+
+    layer("stem", 3, 3, 4, STEM)
+    layer("down", 3, 3, STEM, WIDTH)
+    for i in range(BLOCKS):
+        layer(f"block{i}.first", 3, 3, WIDTH, WIDTH)
+        layer(f"block{i}.second", 3, 3, WIDTH, WIDTH, gain=0.0)
+    layer("pyramid", WIDTH, WIDTH)
+    for grid in GRIDS:
+        layer(f"pyramid{grid}", WIDTH, WIDTH, gain=0.5)
+    layer("fine", STEM, WIDTH)
+    layer("coarse", WIDTH, WIDTH, gain=1.0)
+    layer("head", WIDTH, 4 * N_CLASSES, gain=1.0)
+    return params
+
+
+def forward(params, rgb):
+    """Scores of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64, 10); cache: those of the layers by name."""
+    cache = {}
+
+    def conv(name, x, stride=1):
+        out, cache[name] = conv_forward(x, params[f"{name}.w"], params[f"{name}.b"], stride)
+        return out
+
+    def linear(name, x):
+        out, cache[name] = linear_forward(x, params[f"{name}.w"], params[f"{name}.b"])
+        return out
+
+    def relu(name, x):
+        out, cache[f"{name}.relu"] = relu_forward(x)
+        return out
+
+    fine = relu("stem", conv("stem", standardise(rgb, params["stem.w"].dtype), 2))
+    x = relu("down", conv("down", fine, 2))
+    for i in range(BLOCKS):
+        inner = relu(f"block{i}.first", conv(f"block{i}.first", x))
+        x = relu(f"block{i}.second", x + conv(f"block{i}.second", inner))
+    y = linear("pyramid", x)
+    for grid in GRIDS:
+        pooled, cache[f"pool{grid}"] = pool_forward(x, grid)
+        y = y + upsample_forward(linear(f"pyramid{grid}", pooled), x.shape[1] // grid)[0]
+    y = relu("pyramid", y)
+    joined = relu("head", linear("fine", fine) + upsample_forward(linear("coarse", y), 2)[0])
+    return _unfold(linear("head", joined)), cache
+
+
+def standardise(rgb, dtype=np.float32):
+    """Colours less the view's mean over its spread, and how high each row is: (B, H, H, 3) uint8 -> (B, H, H, 4)."""
+    B, H, W, _ = rgb.shape
+    x = np.empty((B, H, W, 4), dtype)
+    x[..., :3] = rgb
+    pixels = x[..., :3].reshape(B, -1)
+    mean, spread = pixels.mean(1), pixels.std(1)
+    x[..., :3] -= mean[:, None, None, None]
+    x[..., :3] /= spread[:, None, None, None] + 1
+    x[..., 3] = np.linspace(1, -1, H)[:, None]  # the camera never tilts: floor is low, ceiling high
+    return x
+
+
+def backward(params, dscores, cache):
+    """Gradients of all parameters from dscores (B, 64, 64, 10), as a dict with the names of `params`."""
+    grads = {}
+
+    def back(step, name, dout):
+        dx, grads[f"{name}.w"], grads[f"{name}.b"] = step(dout, cache[name])
+        return dx
+
+    djoined = relu_backward(back(linear_backward, "head", _fold(dscores)), cache["head.relu"])
+    dfine = back(linear_backward, "fine", djoined)
+    dy = back(linear_backward, "coarse", upsample_backward(djoined, (2,)))
+    dy = relu_backward(dy, cache["pyramid.relu"])
+    dx = back(linear_backward, "pyramid", dy)
+    for grid in GRIDS:
+        dpooled = back(linear_backward, f"pyramid{grid}", upsample_backward(dy, (dy.shape[1] // grid,)))
+        dx = dx + pool_backward(dpooled, cache[f"pool{grid}"])
+    for i in reversed(range(BLOCKS)):
+        dsum = relu_backward(dx, cache[f"block{i}.second.relu"])
+        dinner = back(conv_backward, f"block{i}.second", dsum)
+        dx = dsum + back(conv_backward, f"block{i}.first", relu_backward(dinner, cache[f"block{i}.first.relu"]))
+    dfine = dfine + back(conv_backward, "down", relu_backward(dx, cache["down.relu"]))
+    dstem = relu_backward(dfine, cache["stem.relu"])
+    grads["stem.w"], grads["stem.b"] = conv_backward_weights(dstem, cache["stem"])
+    return grads
+
+
+def predict(params, rgb, chunk=8):
+    """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. Few views at once stay in the cache."""
+    labels = np.empty(rgb.shape[:3], np.uint8)
+    for i in range(0, len(rgb), chunk):
+        labels[i:i + chunk] = forward(params, rgb[i:i + chunk])[0].argmax(-1)
+    return labels
+
+
+def train(params, rgb, labels, rng, epochs, batch=16, rate=3e-3, progress=None):
+    """Fit `params` in place to views and their labels; each view is seen mirrored half the time.
+
+    rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
+    """
+    adam, n_steps = Adam(params), epochs * (len(rgb) // batch)
+    for step in range(n_steps):
+        if step % (len(rgb) // batch) == 0:
+            order = rng.permutation(len(rgb))
+        i = order[step * batch % (len(rgb) // batch * batch):][:batch]
+        x, y = rgb[i], labels[i]
+        if rng.random() < 0.5:
+            x, y = x[:, :, ::-1], y[:, :, ::-1]
+        scores, cache = forward(params, x)
+        loss, dscores = softmax_cross_entropy(scores, y)
+        share = (step + 1) / n_steps
+        adam.step(backward(params, dscores, cache), rate * min(1, 20 * share) * (1 + np.cos(np.pi * share)) / 2)
+        if progress:
+            progress(share, loss)
+
+
+def accuracy(predicted, true):
+    """Pixel accuracy, and mean intersection over union of the classes that occur in `true`."""
+    both = np.bincount(true.ravel() * N_CLASSES + predicted.ravel(), minlength=N_CLASSES ** 2)
+    both = both.reshape(N_CLASSES, N_CLASSES).astype(float)
+    hit, present = both.diagonal(), both.sum(1) > 0
+    iou = hit[present] / (both.sum(0) + both.sum(1) - hit)[present]
+    return hit.sum() / both.sum(), iou.mean()
+
+
+def _unfold(x):
+    """(B, H, W, 4 K) -> (B, 2 H, 2 W, K): the four quarters of the channels are a pixel's 2 x 2 sub-pixels."""
+    B, H, W, F = x.shape
+    return x.reshape(B, H, W, 2, 2, F // 4).transpose(0, 1, 3, 2, 4, 5).reshape(B, 2 * H, 2 * W, F // 4)
+
+
+def _fold(x):
+    """The way back: (B, 2 H, 2 W, K) -> (B, H, W, 4 K)."""
+    B, H, W, K = x.shape
+    return x.reshape(B, H // 2, 2, W // 2, 2, K).transpose(0, 1, 3, 2, 4, 5).reshape(B, H // 2, W // 2, 4 * K)
+
+
+def save(params, path, made_by):
+    """Write the weights and what made them."""
+    save_arrays(path, made_by, **params)
+
+
+def load(path):
+    """Weights of a file of `save`, and what made them; ValueError if they do not fit this net."""
+    params, made_by = load_arrays(path)
+    wanted = {name: p.shape for name, p in new_params(np.random.default_rng(0)).items()}
+    found = {name: p.shape for name, p in params.items()}
+    if wanted != found:
+        name = next(k for k in wanted | found if wanted.get(k) != found.get(k))
+        raise ValueError(f"{path}: {name}: expected shape {wanted.get(name)}, found {found.get(name)}")
+    return params, made_by

@@ -1,0 +1,140 @@
+"""A home as upright boxes with a class and a colour, and where in it a robot has room.
+
+Walls are thin boxes, an open door is a leaf at a right angle to its gap with wall above it, a polygon becomes the
+boxes that cover it. Everything downstream (collision, rays, views) sees boxes only.
+
+    centre (N, 2) m    half (N, 2) m     centre and half the side lengths of each box's footprint
+    angle  (N,)   rad                    of its first side, counter-clockwise from +x
+    z      (N, 2) m                      bottom and top
+    label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1
+"""
+
+import zlib
+
+import numpy as np
+
+from . import floor_plan
+from .classes import CEILING, DOOR, FLOOR, WALL, class_of
+from .free_space import FreeSpace, box_distance
+from .polygons import cover_polygon
+
+WALL_THICKNESS_M = 0.1
+LEAF_THICKNESS_M = 0.04
+THINNEST_M = 0.01  # a picture without depth still has two sides
+ROBOT_RADIUS_M = 0.2
+ROBOT_HEIGHT_M = 1.35  # the camera's 1.25 m and a little more: what hangs higher is no obstacle
+STEP_M = 0.05  # what is flatter is driven over: a carpet
+
+# Colours by class, for what bears none of its own: a mean, how far objects stray from it in brightness, and in hue.
+# They overlap, `other` with all of them: the words of a view are learned, not looked up.
+COLOUR_MEAN = np.array([[.80, .77, .70], [.50, .39, .28], [.93, .93, .90], [.52, .60, .78], [.66, .45, .23],
+                        [.36, .24, .15], [.62, .30, .31], [.80, .86, .90], [.08, .08, .10], [.50, .52, .44]])
+BRIGHTNESS_STD = np.array([.06, .07, .03, .11, .08, .07, .11, .05, .03, .18])
+HUE_STD = np.array([.02, .03, .01, .06, .04, .03, .07, .02, .01, .12])
+
+
+class World:
+    """A home made of boxes, from a floor plan (a dict as in floor_plan.py)."""
+
+    def __init__(self, plan):
+        self.plan = plan = floor_plan.check(plan)
+        self.name = str(plan.get("name", "home"))
+        self.wall_height = float(plan.get("wall_height", floor_plan.WALL_HEIGHT_M))
+        ends = np.array(plan["walls"], float).reshape(-1, 2)
+        self.bounds = (*ends.min(0), *ends.max(0))
+        rng = np.random.default_rng(zlib.crc32(self.name.encode()))  # colours belong to the home, not to a run
+        shell = plan.get("colors", {})
+        self.floor_colour = _colour(FLOOR, shell.get("floor"), rng)
+        self.ceiling_colour = _colour(CEILING, shell.get("ceiling"), rng)
+        wall_colour = _colour(WALL, shell.get("wall"), rng)
+
+        walls = [_panel(wall, WALL_THICKNESS_M, 0.0, self.wall_height, WALL, wall_colour) for wall in plan["walls"]]
+        doors = plan.get("doors", [])
+        shut = [_panel(d["segment"], WALL_THICKNESS_M, 0.0, self.wall_height, DOOR, wall_colour) for d in doors]
+        sealed = np.array(walls + shut)
+        self.free_space = FreeSpace(self.bounds, sealed[:, 0:2], sealed[:, 2:4], sealed[:, 4])
+        boxes = walls + [box for door in doors for box in self._door(door, np.array(walls), wall_colour, rng)]
+        gaps = np.array([d["segment"] for d in doors], float).reshape(-1, 2, 2).mean(1)
+        for thing in plan.get("objects", []):
+            # CHOICE: a door among the objects that fills a gap is that door's leaf, told twice: the door decides.
+            middle = np.mean(thing["polygon"], 0)
+            if class_of(thing["class"]) == DOOR and (np.hypot(*(gaps - middle).T) < 0.2).any():
+                continue
+            label, z0 = class_of(thing["class"]), thing.get("z0", 0.0)
+            colour = _colour(label, thing.get("color"), rng)
+            boxes += [(*box, z0, z0 + thing["height"], label, *colour) for box in cover_polygon(thing["polygon"])]
+
+        boxes = np.array(boxes, float)
+        self.centre, self.half, self.angle = boxes[:, 0:2], boxes[:, 2:4].clip(THINNEST_M / 2), boxes[:, 4]
+        self.z, self.label, self.colour = boxes[:, 5:7], boxes[:, 7].astype(np.uint8), boxes[:, 8:11]
+        self.z[:, 1] = self.z[:, 1].clip(self.z[:, 0] + THINNEST_M)
+        self.carries = self._carries()
+        self.blocks = (self.z[:, 0] < ROBOT_HEIGHT_M) & (self.z[:, 1] > STEP_M)
+        self.free_space.furnish(self.centre[self.blocks], self.half[self.blocks], self.angle[self.blocks])
+
+    @classmethod
+    def load(cls, path):
+        """The home of the floor plan at `path`; ValueError that names the fault."""
+        return cls(floor_plan.load(path))
+
+    def save(self, path):
+        """Write the floor plan, whole or not at all."""
+        floor_plan.save(self.plan, path)
+
+    def is_free(self, xy, radius_m=ROBOT_RADIUS_M):
+        """Whether a disc at each point is inside the home and touches nothing: (n, 2) -> (n,) bool."""
+        xy, b = np.asarray(xy, float).reshape(-1, 2), self.blocks
+        distance = box_distance(xy, self.centre[b], self.half[b], self.angle[b]).min(1, initial=np.inf)
+        return self.free_space.inside(xy) & (distance > radius_m)
+
+    def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
+        """n poses uniform over the free space that hangs together, bearings uniform: (n, 3)."""
+        reachable = self.free_space.largest_room(radius_m)
+        if not reachable.any():
+            raise ValueError(f"{self.name}: expected free space for a disc of {radius_m:g} m, found none")
+        poses = np.empty((0, 3))
+        while len(poses) < n:  # every draw hits with the share of free space in the bounds, which is not zero
+            draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 64, 3))
+            good = self.free_space.look_up(reachable, draw[:, :2]) & self.is_free(draw[:, :2], radius_m)
+            poses = np.vstack([poses, draw[good]])
+        return poses[:n]
+
+    def _carries(self):
+        """Which boxes have something above their top within their outline: (N,) bool."""
+        reach = abs(np.cos(self.angle)) * self.half.T[:, None] + abs(np.sin(self.angle)) * self.half.T[::-1, None]
+        x, y = reach[0, 0], reach[1, 0]
+        near = [abs(np.subtract.outer(c, c)) < np.add.outer(r, r) for c, r in zip(self.centre.T, (x, y), strict=True)]
+        above = self.z[None, :, 0] > self.z[:, None, 1] - 0.01
+        return (near[0] & near[1] & above).any(1)
+
+    def _door(self, door, walls, wall_colour, rng):
+        """Boxes of a door: its leaf, open to the left of the segment and hinged at its first end, or shut; the lintel."""
+        segment, height = np.array(door["segment"], float), door.get("height", floor_plan.DOOR_HEIGHT_M)
+        hinge, end = segment.reshape(2, 2)
+        along = (end - hinge) / np.hypot(*(end - hinge))
+        left, middle = np.array([-along[1], along[0]]), (hinge + end) / 2
+        leads_out = not self.free_space.inside(middle + 0.4 * np.array([left, -left])).all()
+        # CHOICE: a door of which the plan says nothing is open, but a front door is shut.
+        is_open = door.get("state", "closed" if leads_out else "open") == "open"
+        # A segment along a wall is no gap: a folding door that stands open there.
+        folded = box_distance(middle[None], walls[:, 0:2], walls[:, 2:4], walls[:, 4]).min() < 0.1
+        if is_open and not folded:
+            end = hinge + left * np.hypot(*(end - hinge))
+        boxes = [_panel((*hinge, *end), LEAF_THICKNESS_M, 0.0, height, DOOR, _colour(DOOR, door.get("color"), rng))]
+        if height < self.wall_height and not folded:
+            boxes.append(_panel(segment, WALL_THICKNESS_M, height, self.wall_height, WALL, wall_colour))
+        return boxes
+
+
+def _panel(segment, thickness, z0, z1, label, colour):
+    """An upright board along a segment as a row (x, y, half length, half width, angle, z0, z1, label, r, g, b)."""
+    x0, y0, x1, y1 = segment
+    length, angle = np.hypot(x1 - x0, y1 - y0), np.arctan2(y1 - y0, x1 - x0)
+    return ((x0 + x1) / 2, (y0 + y1) / 2, length / 2, thickness / 2, angle, z0, z1, label, *colour)
+
+
+def _colour(label, given, rng):
+    """The given RGB (0..255) or one drawn for the class, in 0..1. Draws in any case, so neighbours keep theirs."""
+    drawn = COLOUR_MEAN[label] + BRIGHTNESS_STD[label] * rng.normal() + HUE_STD[label] * rng.normal(size=3)
+    drawn = drawn.clip(0.03, 0.97)
+    return drawn if given is None else np.array(given) / 255

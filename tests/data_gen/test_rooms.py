@@ -1,0 +1,217 @@
+"""Laws of the procedural homes and of the flat that is drawn by hand."""
+
+import json
+import subprocess
+import sys
+from collections import defaultdict
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+import data_gen
+from data_gen.rooms import home_plan, make_home
+from gnl.classes import CLASSES
+from gnl.world import World
+
+FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
+CELL_M, ROBOT_M, ROBOT_HEIGHT_M = 0.05, 0.2, 1.35
+
+
+@pytest.fixture(scope="module")
+def homes():
+    return [home_plan(seed) for seed in range(50)]
+
+
+@pytest.fixture(scope="module")
+def flat():
+    return json.loads(FLAT.read_text())
+
+
+def board(x0, y0, x1, y1, thickness):
+    """Corners of a board that stands along a segment."""
+    a, b = np.array([x0, y0]), np.array([x1, y1])
+    u, v = (b - a) / np.hypot(*(b - a))
+    aside = np.array([-v, u]) * thickness / 2
+    return np.array([a - aside, b - aside, b + aside, a + aside])
+
+
+def leaf(door, opened_rad=np.pi / 2):
+    """Corners of a door's leaf, hinged at the first end of its segment and turned to its left."""
+    x0, y0, x1, y1 = door["segment"]
+    c, s = np.cos(opened_rad), np.sin(opened_rad)
+    return board(x0, y0, x0 + c * (x1 - x0) - s * (y1 - y0), y0 + s * (x1 - x0) + c * (y1 - y0), 0.04)
+
+
+def covers(polygon, x, y):
+    """Which of the points (x, y) lie within a polygon, by the even-odd rule."""
+    inside = np.zeros(np.shape(x), bool)
+    for (x0, y0), (x1, y1) in zip(polygon, np.roll(polygon, -1, 0), strict=True):
+        if y0 != y1:
+            inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * (x1 - x0) / (y1 - y0))
+    return inside
+
+
+def grid(low, high, cell):
+    return np.meshgrid(*(np.arange(a + cell / 2, b, cell) for a, b in zip(low, high, strict=True)))
+
+
+def overlaps(polygons, others):
+    """Pairs (i, j) of polygons that overlap, seen on a grid of 1 cm over what their bounds have in common."""
+    low = np.maximum(np.array([np.min(p, 0) for p in polygons])[:, None], [np.min(p, 0) for p in others])
+    high = np.minimum(np.array([np.max(p, 0) for p in polygons])[:, None], [np.max(p, 0) for p in others])
+    for i, j in np.argwhere((high - low > 0.002).all(-1)):
+        x, y = grid(low[i, j], high[i, j], min(0.01, (high[i, j] - low[i, j]).min() / 3))
+        if (covers(polygons[i], x, y) & covers(others[j], x, y)).sum() > 2:
+            yield int(i), int(j)
+
+
+def top(thing):
+    return thing["z0"] + thing["height"]
+
+
+def regions(plan):
+    """Parts of the floor in which a robot can roam, numbered from 1, on a raster; the raster's x and y."""
+    ends = np.array(plan["walls"]).reshape(-1, 2)
+    x, y = grid(ends.min(0), ends.max(0), CELL_M)
+    obstacles = [board(*wall, 0.1) for wall in plan["walls"]]
+    obstacles += [leaf(door, np.pi / 2 * (door["state"] == "open")) for door in plan["doors"]]
+    obstacles += [thing["polygon"] for thing in plan["objects"]
+                  if thing["z0"] < ROBOT_HEIGHT_M and top(thing) > 0.05]
+    free = np.ones(x.shape, bool)
+    for polygon in obstacles:
+        free &= ~covers(polygon, x, y)
+    clearance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * CELL_M
+    return ndimage.label(clearance > ROBOT_M)[0], x, y
+
+
+def cut_off(plan):
+    """Types of the rooms that the robot cannot reach from the largest part of the floor."""
+    region, x, y = regions(plan)
+    home = region == np.bincount(region[region > 0]).argmax()
+    return [room["type"] for room in plan["rooms"] if not home[covers(room["polygon"], x, y)].sum() > 50]
+
+
+def collisions(plan):
+    """Names of two things that share space."""
+    things = plan["objects"]
+    polygons = [thing["polygon"] for thing in things]
+    pairs = ((things[i], things[j]) for i, j in overlaps(polygons, polygons) if i < j)
+    return [(a["name"], b["name"]) for a, b in pairs if min(top(a), top(b)) > max(a["z0"], b["z0"]) + 1e-3]
+
+
+def things_in_the_way(plan):
+    """Names of what stands in a wall, in an open door's leaf or where it swings."""
+    polygons = [thing["polygon"] for thing in plan["objects"]]
+    in_walls = overlaps(polygons, [board(*wall, 0.1) for wall in plan["walls"]])
+    doors = [door for door in plan["doors"] if door["state"] == "open"]
+    swings = [leaf(door, angle) for door in doors for angle in np.linspace(0, np.pi / 2, 7)]
+    in_swings = (i for i, _ in overlaps(polygons, swings) if plan["objects"][i]["z0"] < 2.0)
+    return [plan["objects"][i]["name"] for i in {*(i for i, _ in in_walls), *in_swings}]
+
+
+def looks_by_room(plan):
+    """(type, {name: [sizes and colours of its pieces]}) of each room."""
+    for room in plan["rooms"]:
+        looks = defaultdict(list)
+        for thing in plan["objects"]:
+            if covers(room["polygon"], *np.mean(thing["polygon"], 0)):
+                sides = np.hypot(*np.diff(thing["polygon"][:3], axis=0).T)
+                looks[thing["name"]].append((*sides, thing["height"], *thing["color"]))
+        yield room["type"], looks
+
+
+def share_alike(aliasing, seeds=range(8)):
+    """Share of the bedrooms' pairs whose beds are the same."""
+    same = []
+    for seed in seeds:
+        bedrooms = [looks for kind, looks in looks_by_room(home_plan(seed, aliasing)) if kind == "bedroom"]
+        same += [np.allclose(a["bed"], b["bed"], atol=2e-3) for a, b in combinations(bedrooms, 2)]
+    return np.mean(same)
+
+
+def test_homes_are_of_the_promised_size(homes):
+    for plan in homes:
+        ends = np.array(plan["walls"]).reshape(-1, 2)
+        sides = np.ptp(ends, axis=0)
+        assert 80 <= sides.prod() <= 130 and (sides >= 8.4).all() and (sides <= 13.1).all()
+        kinds = [room["type"] for room in plan["rooms"]]
+        assert 6 <= len(kinds) <= 9 and kinds.count("bedroom") >= 2
+        assert {"living room", "kitchen", "bathroom", "corridor"} <= set(kinds)
+        extents = np.array([np.ptp(room["polygon"], axis=0) for room in plan["rooms"]])
+        assert np.isclose(extents.prod(1).sum(), sides.prod())  # rooms tile the home
+        for kind, extent in zip(kinds, extents, strict=True):
+            assert extent.min() >= 1.2
+            assert extent.prod() >= {"bathroom": 4, "corridor": 0}.get(kind, 8)
+        assert 30 <= len(plan["objects"]) <= 80
+    assert {len(plan["rooms"]) for plan in homes} == {6, 7, 8, 9}
+
+
+def test_robot_reaches_every_room(homes):
+    assert {plan["name"]: rooms for plan in homes if (rooms := cut_off(plan))} == {}
+
+
+def test_hardly_any_floor_is_cut_off(homes):
+    for plan in homes:
+        sizes = np.bincount(regions(plan)[0].ravel())[1:]
+        assert sizes.max() > 0.98 * sizes.sum()
+
+
+def test_no_two_things_share_space(homes):
+    assert [pair for plan in homes for pair in collisions(plan)] == []
+
+
+def test_nothing_stands_in_walls_or_where_doors_swing(homes):
+    assert [name for plan in homes for name in things_in_the_way(plan)] == []
+
+
+def test_all_ten_classes_are_in_every_home(homes):
+    for plan in homes:
+        words = {thing["class"] for thing in plan["objects"]}
+        assert words | {"wall", "floor", "ceiling", "door"} == set(CLASSES) and plan["doors"]
+
+
+def test_one_seed_is_one_home_in_a_fresh_process_too(homes):
+    code = "import json; from data_gen.rooms import home_plan; print(json.dumps(home_plan(7)))"
+    fresh = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                           cwd=Path(data_gen.__file__).parents[1]).stdout
+    assert json.loads(fresh) == homes[7]  # and so nothing in it is more than plain JSON
+    assert len({json.dumps(plan["walls"]) for plan in homes}) == len(homes)
+
+
+def test_aliasing_makes_rooms_of_a_type_alike():
+    assert share_alike(0.0) == 0
+    assert 0 < share_alike(0.6) < 1
+    assert share_alike(1.0) == 1
+
+
+@pytest.mark.parametrize("aliasing", [-0.1, 1.1, float("nan"), "much", None])
+def test_bad_aliasing_is_refused(aliasing):
+    with pytest.raises(ValueError, match="aliasing: expected .* found"):
+        home_plan(0, aliasing)
+
+
+@pytest.mark.parametrize("seed", [-1, 0.5, "one", None])
+def test_bad_seed_is_refused(seed):
+    with pytest.raises(ValueError, match="seed: expected .* found"):
+        home_plan(seed)
+
+
+def test_home_is_the_world_of_its_plan():
+    home = make_home(np.int64(3), aliasing=0.5)
+    assert home.plan == home_plan(3, 0.5)
+    assert home.is_free(home.free_poses(20, np.random.default_rng(0))[:, :2]).all()
+
+
+def test_flat_keeps_the_same_laws(flat):
+    assert cut_off(flat) == [] and collisions(flat) == [] and things_in_the_way(flat) == []
+
+
+def test_flat_has_all_classes_a_corner_sofa_and_a_turned_table(flat):
+    world = World.load(FLAT)
+    assert set(world.label) | {1, 2} == set(range(len(CLASSES)))  # floor and ceiling are no boxes
+    polygons = {thing["name"]: np.array(thing["polygon"]) for thing in flat["objects"]}
+    assert len(polygons["corner sofa"]) == 6
+    assert (np.diff(polygons["coffee table"], axis=0) != 0).all()

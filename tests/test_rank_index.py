@@ -1,0 +1,175 @@
+"""The rank index gives the answers of brute force and of the KD-tree, small or dealt out into buckets."""
+
+import numpy as np
+import pytest
+from naive import nearest
+
+from gnl import rank_index
+from gnl.kdtree import KDTree
+from gnl.rank_index import RankIndex, reach_of
+
+
+def reciprocal_ranks(scores):
+    return (1 / (1 + np.argsort(np.argsort(-scores, axis=1), axis=1))).astype(np.float32)
+
+
+def random(rng, n, n_places):
+    return reciprocal_ranks(rng.normal(size=(n, n_places)))
+
+
+def clustered(rng, n, n_places):
+    prototypes = rng.normal(size=(12, n_places))
+    which = rng.zipf(1.5, size=n) % 12
+    return reciprocal_ranks(prototypes[which] + 0.2 * rng.normal(size=(n, n_places)))
+
+
+def duplicated(rng, n, n_places):
+    return random(rng, 9, n_places)[rng.integers(9, size=n)]
+
+
+def index_of(points):
+    index = RankIndex(points.shape[1])
+    index.add(points)
+    return index
+
+
+@pytest.fixture(params=[0, 100, 2000], ids="small={}".format)
+def small(request, monkeypatch):
+    """The size up to which the store is one bucket: dealt out from the start, on the way, and never."""
+    monkeypatch.setattr(rank_index, "SMALL", request.param)
+
+
+@pytest.mark.parametrize("k", [1, 4, 16, 500])
+@pytest.mark.parametrize("n_places", [1, 2, 5, 60, 360])
+@pytest.mark.parametrize("draw", [random, clustered, duplicated])
+def test_answers_are_those_of_brute_force(draw, n_places, k, small):
+    rng = np.random.default_rng(n_places)
+    points = draw(rng, 308, n_places)
+    points, queries = points[:300], np.concatenate([points[300:], points[:4], random(rng, 2, n_places)])
+    distances, ids = index_of(points).query(queries, k)
+    true_distances, true_ids = nearest(points, queries, k)
+    np.testing.assert_array_equal(ids, true_ids)
+    np.testing.assert_array_equal(distances, true_distances)
+    assert distances.dtype == float
+    assert ids.dtype == int
+
+
+@pytest.mark.parametrize("draw", [clustered, duplicated])
+def test_both_indexes_agree_while_they_grow(draw, small):
+    rng = np.random.default_rng(0)
+    points, index, tree = draw(rng, 250, 20), RankIndex(20), KDTree(20)
+    for i, point in enumerate(points):
+        assert index.add(point[None]).tolist() == tree.add(point[None]).tolist() == [i]
+        assert len(index) == i + 1
+        if i % 9 == 0:
+            queries = np.concatenate([points[rng.integers(250, size=2)], random(rng, 1, 20)])
+            for k in (1, 4):
+                for ours, theirs in zip(index.query(queries, k), tree.query(queries, k), strict=True):
+                    np.testing.assert_array_equal(ours, theirs)
+
+
+def test_first_stored_point_is_found_again(small):
+    points = clustered(np.random.default_rng(1), 300, 60)
+    distances, ids = index_of(points).query(points[:1], 1)
+    assert (distances[0, 0], ids[0, 0]) == (0, 0)
+
+
+@pytest.mark.parametrize("n_first", [0, 1, 40, 150, 300])
+@pytest.mark.parametrize("draw", [clustered, duplicated])
+def test_an_older_state_is_a_fresh_index_of_the_first_points(draw, n_first, small):
+    rng = np.random.default_rng(2)
+    points, queries = draw(rng, 300, 30), random(rng, 10, 30)
+    queries = np.concatenate([queries, points[-5:]])
+    now, then = index_of(points).query(queries, 5, n_first), index_of(points[:n_first]).query(queries, 5)
+    for ours, theirs in zip(now, then, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+@pytest.mark.parametrize("draw", [random, duplicated])
+def test_points_come_back_as_they_were_added(draw, small):
+    points = draw(np.random.default_rng(3), 150, 40)
+    index = index_of(points[:90])
+    index.add(points[:0])
+    index.add(points[90:])
+    np.testing.assert_array_equal(index.points, points)
+    assert index.points.dtype == np.float32
+
+
+def test_equal_points_are_found_oldest_first(small):
+    points = np.repeat(random(np.random.default_rng(4), 1, 50), 150, axis=0)
+    distances, ids = index_of(points).query(points[:2], 150)
+    np.testing.assert_array_equal(ids, [np.arange(150)] * 2)
+    assert not distances.any()
+
+
+def test_equal_points_share_one_row(small):
+    points = duplicated(np.random.default_rng(5), 300, 50)
+    assert sum(len(bucket.ids) for bucket in index_of(points)._buckets.values()) == 9
+
+
+def test_vectors_of_equal_hash_stay_apart(small, monkeypatch):
+    monkeypatch.setattr(rank_index, "hash", lambda _: 0, raising=False)
+    rng = np.random.default_rng(6)
+    points = np.concatenate([random(rng, 100, 6), duplicated(rng, 50, 6)])
+    np.testing.assert_array_equal(index_of(points).points, points)
+    np.testing.assert_array_equal(index_of(points).query(points, 6)[1], nearest(points, points, 6)[1])
+
+
+def test_no_vector_beyond_a_depth_is_nearer_than_its_reach():
+    """All 720 rankings of six places against one: the bound holds, and the nearest vector attains it."""
+    everyone = np.array(np.meshgrid(*[np.arange(6)] * 6)).reshape(6, -1).T
+    everyone = everyone[[len(set(ranks)) == 6 for ranks in everyone.tolist()]]
+    points = 1 / (1 + everyone)
+    query = 1 / np.arange(1, 7)
+    distances = np.sqrt(((points - query) ** 2).sum(axis=1))
+    for depth in range(1, 6):
+        nearest_beyond = distances[points.argmax(axis=1) >= depth].min()
+        assert reach_of(depth) <= nearest_beyond
+        np.testing.assert_allclose(reach_of(depth), nearest_beyond, rtol=2e-6)
+
+
+def test_most_buckets_stay_closed(monkeypatch):
+    monkeypatch.setattr(rank_index, "SMALL", 0)
+    points = clustered(np.random.default_rng(7), 1000, 60)
+    index, depths = index_of(points), []
+    look = index._look
+    monkeypatch.setattr(index, "_look", lambda queries, depth, *rest: (
+        depths.extend([depth] * len(queries)) or look(queries, depth, *rest)))
+    index.query(points[::20], 4)
+    assert depths.count(1) == 50
+    assert depths.count(60) < 10
+
+
+def test_an_empty_index_answers_with_nothing(small):
+    queries = random(np.random.default_rng(8), 2, 3)
+    distances, ids = RankIndex(3).query(queries, 4)
+    np.testing.assert_array_equal(distances, np.full((2, 4), np.inf))
+    np.testing.assert_array_equal(ids, np.full((2, 4), -1))
+    assert index_of(queries).query(queries[:0], 4)[1].shape == (0, 4)
+
+
+@pytest.mark.parametrize("points, message", [
+    ([1, 1 / 2, 1 / 3], r"points: expected shape \(n, 3\), found \(3,\)"),
+    ([[1, 1 / 2]], r"points: expected shape \(n, 3\), found \(1, 2\)"),
+    ([[1, np.nan, 1 / 3]], "points: expected finite"),
+    ([[1, 1 / 2, 1 / 2]], "points: expected reciprocal ranks"),
+    ([[1, 1 / 2, 1 / 3], [1, 2, 3]], r"points: expected reciprocal ranks.*1/3.*found \[1. 2. 3.\]"),
+])
+def test_bad_points_are_refused_and_leave_no_trace(points, message):
+    index = RankIndex(3)
+    for call in (index.add, lambda points: index.query(points, 1)):
+        with pytest.raises(ValueError, match=message):
+            call(points)
+    assert len(index) == 0
+
+
+def test_bad_counts_are_refused():
+    index = RankIndex(1)
+    for k in (0, -1, 2.5):
+        with pytest.raises(ValueError, match="k: expected a whole number from 1"):
+            index.query([[1]], k)
+    for n_first in (-1, 1):
+        with pytest.raises(ValueError, match="n_first: expected a whole number from 0 to 0, found"):
+            index.query([[1]], 1, n_first)
+    with pytest.raises(ValueError, match="n_places: expected a whole number from 1"):
+        RankIndex(0)
