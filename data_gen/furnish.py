@@ -90,15 +90,13 @@ def put(piece, rule, other, room, rng):
     slide, slip = rng.uniform(-0.5, 0.5, 2)
     quarters, side, gap = int(rng.integers(4)), int(rng.choice((-1, 1))), rng.uniform(0.03, 0.4)
     view, angle = room, None
-    if rule in AT_WALL:
-        if rule == "facing":  # the wall at which `other` looks
-            quarters = round((other.angle - room.angle) / (math.pi / 2)) + 2
+    if rule in ("wall", "corner"):
         view = turned(room, quarters)
         reach = max(view.width - w - 2 * BACK_M, 0)
-        right = reach * (slide if rule == "wall" else side / 2)
-        if rule == "facing":
-            right, _ = seen(view, other.x, other.y)
-        front = BACK_M + (d - view.depth) / 2
+        right, front = reach * (slide if rule == "wall" else side / 2), BACK_M + (d - view.depth) / 2
+    elif rule == "facing":  # at the wall that `other` looks at
+        view = turned(room, round((other.angle - room.angle) / (math.pi / 2)) + 2)
+        (right, _), front = seen(view, other.x, other.y), BACK_M + (d - view.depth) / 2
     elif rule == "middle":
         view = turned(room, quarters)
         right, front = slide * view.width / 3, slip * view.depth / 3

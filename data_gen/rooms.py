@@ -22,7 +22,7 @@ from .layout import cut, direction, draw_gaps, draw_rooms, draw_walls
 WALL_HEIGHT_M, DOOR_HEIGHT_M = 2.5, 2.0
 BEFORE_DOOR_M, BEFORE_OPENING_M = 0.95, 0.7  # floor kept clear on both sides; a leaf swings 0.9 m
 IN_EVERY_HOME = {"bed", "table", "sofa", "refrigerator", "tv", "other"}
-TRIES = 10000  # about one layout in forty is good
+TRIES = 10000  # of nine rooms, one layout in forty is good
 
 SHELLS = {  # CHOICE: pale walls, floors of wood, stone or tile
     "wall": ((238, 234, 226), (226, 214, 192), (214, 220, 226), (222, 228, 212), (236, 218, 208)),

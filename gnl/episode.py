@@ -27,7 +27,7 @@ class Senses:
     """From poses to scores of places: camera, segmentation net, scene graph, GCN. Counts the seconds of each."""
 
     world: object
-    net: dict
+    net: dict | None  # weights of the segmentation net; None: true labels
     gcn: object
     noise: float = 1.0
     seconds: dict = field(default_factory=dict)
@@ -35,8 +35,9 @@ class Senses:
 
     def look(self, poses, rng):
         """What robots at `poses` (B, 3) see, as SceneGraphs."""
-        rgb = self.timed("view", render, self.world, poses, rng, segnet.SIZE_PX, self.noise)[0]
-        labels = self.timed("labels", segnet.predict, self.net, rgb)
+        rgb, labels = self.timed("view", render, self.world, poses, rng, segnet.SIZE_PX, self.noise)
+        if self.net is not None:
+            labels = self.timed("labels", segnet.predict, self.net, rgb)
         self.views += len(poses)
         return self.timed("graph", scene_graph, labels)
 

@@ -8,11 +8,13 @@ the sensor change it further. One dial, `noise`, scales all that a clean drawing
 
 import numpy as np
 
+from .classes import CEILING, FLOOR
 from .strip import FIELD_OF_VIEW_RAD, FRONT, TOP, slopes
 
 SUN_RAD = 0.8  # bearing from which the light comes, so that two sides of a box differ
-EXPOSURE_STD, BALANCE_STD, GRADIENT_STD = 0.18, 0.06, 0.15
-TEXTURE, SENSOR = 0.09, 0.12
+EXPOSURE_STD, BALANCE_STD, GRADIENT_STD, SENSOR = 0.12, 0.05, 0.12, 0.12
+# How much the texture of each class shows: wood and cloth much, paint and steel little.
+GRAIN = np.array([.03, .10, .02, .05, .10, .12, .08, .01, .01, .08])
 
 
 def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
@@ -26,7 +28,7 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
     slope = slopes(H).astype(f)[:, None]
 
     table = surfaces.paint(_table(world, poses, surfaces, H, height_m), size)
-    level, depth, grain, grain_ahead, grain_up, *albedo = (table[..., i] for i in range(8))
+    level, depth, grain, grain_ahead, grain_up, contrast, *albedo = (table[..., i] for i in range(9))
     depth = np.where(level == np.inf, depth, level / elevation).clip(0, 30)
     texture = np.sin(grain + depth * (grain_ahead + grain_up * elevation))
 
@@ -34,7 +36,7 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
     gain = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3))).astype(f)
     across, down = (noise * GRADIENT_STD * rng.standard_normal((2, B, 1, 1))).astype(f)
     light = (0.6 + 0.4 * np.exp(depth / f(-5))) * (1 + across * slope + down * elevation)
-    light *= 1 + f(noise * TEXTURE) * texture
+    light *= 1 + f(noise) * contrast * texture
     grit = rng.integers(2 ** 64, size=(3, -(-light.size // 8)), dtype=np.uint64).view(np.uint8)  # eight a draw
 
     rgb = np.empty((*light.shape, 3), np.uint8)
@@ -46,10 +48,10 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
 
 
 def _table(world, poses, surfaces, size, height_m):
-    """What the pixels of each surface share, (S, 8) float32.
+    """What the pixels of each surface share, (S, 9) float32.
 
     columns : height above the camera [m] of a level surface, inf for a front; depth of a front [m];
-              phase of the texture at the camera, its change per metre of depth straight on and upwards; albedo
+              phase of the texture at the camera, its change per metre of depth straight on and upwards; its contrast; albedo
     """
     view, column = np.divmod(surfaces.ray, size)
     x, y, theta = poses.T
@@ -69,8 +71,10 @@ def _table(world, poses, surfaces, size, height_m):
     facing = np.choose(kind, [_facing(world, x[view] + ahead_x / surfaces.w, y[view] + ahead_y / surfaces.w, box),
                               0.95, 0.6])
     facing[box >= len(world.label)] = 0.95
+    contrast = np.append(GRAIN[world.label], GRAIN[[CEILING, FLOOR]])[box]
     albedo = np.vstack([world.colour, world.ceiling_colour, world.floor_colour])[box] * facing[:, None]
-    return np.column_stack([level, 1 / surfaces.w, grain, gx * ahead_x + gy * ahead_y, gz, albedo]).astype(np.float32)
+    return np.column_stack([level, 1 / surfaces.w, grain, gx * ahead_x + gy * ahead_y, gz, contrast, albedo
+                            ]).astype(np.float32)
 
 
 def _facing(world, x, y, box):

@@ -2,7 +2,7 @@
 
 The state of nearest-neighbour Q-learning is a ranking of K places, written as 1/rank: every vector is a
 permutation of (1, 1/2, ..., 1/K). So all have one length, the nearest is the one with the greatest dot
-product, and two are near only if their first places agree, or nearly so. The index keeps one bucket of vectors
+product, and two are near only if their first places agree, or nearly so. The index keeps a bucket of vectors
 for each first place and opens only those that can hold a neighbour (`reach_of`). A robot that faces one more
 bare wall ranks the places as it did at the last one: equal vectors share one row.
 

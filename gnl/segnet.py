@@ -31,7 +31,7 @@ from .nn import (
 )
 
 SIZE_PX = 64
-STEM, WIDTH, BLOCKS, GRIDS = 16, 32, 2, (1, 2, 4)
+STEM, WIDTH, BLOCKS, GRIDS = 16, 32, 1, (1, 2, 4)
 
 
 def new_params(rng, dtype=np.float32):
