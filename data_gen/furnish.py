@@ -6,7 +6,7 @@ look alike to whoever enters them, however they are turned.
 
     x, y        (H, W) m   centres of the cells of a room's floor
     clearance   (H, W) m   distance of each cell from what stands in the robot's way
-    latest      dict       name -> (Box, colour) of the last piece of that name
+    latest      dict       name -> Box of the last piece of that name
 """
 
 import math
@@ -17,7 +17,7 @@ from scipy.ndimage import label
 from gnl.world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M, WALL_THICKNESS_M
 
 from .box import Box, distance, hits, inside, outline, overlap, seen, shift, turned
-from .furniture import DYE_STD, DYES, PIECES, ROOMS, SHADES
+from .furniture import PIECES, ROOMS
 
 TRIES = 8  # CHOICE: more tries fill the last corners and cost time
 BACK_M, MARGIN_M = 0.07, 0.06  # least distance to a wall's centre line: of a piece's back, of anything
@@ -43,13 +43,13 @@ def furnish(room, kind, keep_clear, leaves, key):
         rng = np.random.default_rng((key, index))  # its own stream: what does not fit changes nothing later
         if rng.random() >= often:
             continue
-        piece, colour = draw_piece(name, rng)
+        piece = draw_piece(name, rng)
         for rule, other in tries(rules, latest):
             if rule in ("beside", "round") and name in latest:
-                piece, colour = latest[name]  # a pair of nightstands, a set of chairs
+                piece = latest[name]  # a pair of nightstands, a set of chairs
             box = put(piece, rule, other, room, rng)
-            if name != "carpet" and "carpet" in latest and overlap(box, latest["carpet"][0]):
-                box = box._replace(z0=latest["carpet"][0].height)
+            if name != "carpet" and "carpet" in latest and overlap(box, latest["carpet"]):
+                box = box._replace(z0=latest["carpet"].height)
             if not inside(room, box, MARGIN_M) or hits(box, placed + keep_clear + fronts * (rule in ALONE)):
                 continue
             if box.z0 < ROBOT_HEIGHT_M and box.z0 + box.height > STEP_M:  # it is in the robot's way
@@ -60,8 +60,8 @@ def furnish(room, kind, keep_clear, leaves, key):
                 clearance = left_over
                 fronts += [front] * (rule in AT_WALL)
             placed.append(box)
-            latest[name] = box, colour
-            objects.append(as_object(name, box, colour))
+            latest[name] = box
+            objects.append(as_object(name, box))
             break
         else:
             if index == 0:
@@ -70,17 +70,16 @@ def furnish(room, kind, keep_clear, leaves, key):
 
 
 def draw_piece(name, rng):
-    """A piece of furniture, still at the origin, and its colour."""
-    kind, *ranges = PIECES[name]
+    """A piece of furniture, still at the origin."""
+    _, *ranges = PIECES[name]
     width, depth, height, z0 = (rng.uniform(*least_most) for least_most in ranges)
-    colour = rng.normal(SHADES[rng.choice(DYES[kind])], DYE_STD).clip(8, 250)
-    return Box(0, 0, 0, width, depth, height, z0), colour.astype(int).tolist()
+    return Box(0, 0, 0, width, depth, height, z0)
 
 
 def tries(rules, latest):
     """TRIES pairs (rule, Box it speaks of), the best rule first; none if all speak of what is not there."""
     rules = [rule.partition(" ") for rule in rules.split(" or ")]
-    pairs = [(rule, latest.get(other, [None])[0]) for rule, _, other in rules if not other or other in latest]
+    pairs = [(rule, latest.get(other)) for rule, _, other in rules if not other or other in latest]
     return [pairs[i * len(pairs) // TRIES] for i in range(TRIES) if pairs]
 
 
@@ -138,7 +137,7 @@ def in_one_part(clearance):
     return label(clearance > ROBOT_RADIUS_M + CELL_M / 2)[1] == 1
 
 
-def as_object(name, box, colour):
+def as_object(name, box):
     """A box as an object of a floor plan."""
     return {"name": name, "class": PIECES[name][0], "polygon": outline(box).round(4).tolist(),
-            "z0": round(box.z0, 4), "height": round(box.height, 4), "color": colour}
+            "z0": round(box.z0, 4), "height": round(box.height, 4)}

@@ -1,4 +1,4 @@
-"""What furniture there is, what belongs in which room and where, and in which colours.
+"""What furniture there is, what belongs in which room and where.
 
     rule   where a piece goes: at a "wall", in a "corner", near the "middle", anywhere ("free"), or
            "on", "above", "beside", "before", "round", "facing" another piece; "or" gives the second best
@@ -88,15 +88,3 @@ ROOMS = {  # type: its pieces in this order: name, rule, how often. Without its 
         ("bookshelf", "wall", 0.4), ("lamp", "on side table", 0.5), ("mirror", "wall", 0.6),
         *2 * (("picture", "wall", 0.6),), ("plant", "corner", 0.3), ("ceiling lamp", "middle", 0.5)),
 }
-
-SHADES = {
-    "white": (236, 234, 228), "cream": (222, 210, 186), "grey": (140, 140, 142), "steel": (178, 182, 186),
-    "black": (34, 34, 38), "oak": (186, 146, 98), "walnut": (104, 72, 48), "brown": (126, 90, 64),
-    "blue": (74, 100, 142), "green": (92, 120, 86), "red": (158, 64, 56), "yellow": (210, 174, 86),
-}
-DYES = {  # CHOICE: classes share their shades, so that colour alone gives no class away
-    "bed": ("white", "cream", "grey", "blue"), "sofa": ("grey", "brown", "blue", "green", "cream", "red"),
-    "table": ("white", "oak", "walnut", "black"), "refrigerator": ("white", "grey", "steel", "black"),
-    "tv": ("black", "grey"), "other": tuple(SHADES),
-}
-DYE_STD = 18  # spread about a shade, of 255

@@ -24,12 +24,6 @@ BEFORE_DOOR_M, BEFORE_OPENING_M = 0.95, 0.7  # floor kept clear on both sides; a
 IN_EVERY_HOME = {"bed", "table", "sofa", "refrigerator", "tv", "other"}
 TRIES = 10000  # of nine rooms, one layout in forty is good
 
-SHELLS = {  # CHOICE: pale walls, floors of wood, stone or tile
-    "wall": ((238, 234, 226), (226, 214, 192), (214, 220, 226), (222, 228, 212), (236, 218, 208)),
-    "floor": ((176, 134, 90), (124, 88, 58), (150, 148, 144), (204, 194, 178)),
-    "ceiling": ((244, 243, 240),),
-}
-
 
 def make_home(seed, aliasing=0.3):
     """The World of a home; arguments as for home_plan."""
@@ -53,7 +47,7 @@ def home_plan(seed, aliasing=0.3):
         gaps = rooms and draw_gaps(rooms, rng)
         objects = gaps and draw_objects(rooms, gaps, aliasing, rng)
         if objects:
-            return assemble(f"home-{seed}", rooms, gaps, objects, draw_colours(rng))
+            return assemble(f"home-{seed}", rooms, gaps, objects)
     raise RuntimeError(f"seed {seed}: expected a home within {TRIES} tries, found none")
 
 
@@ -98,18 +92,12 @@ def leaf_of(gap):
     return Box(*middle, math.atan2(v, u), LEAF_THICKNESS_M, length, DOOR_HEIGHT_M)
 
 
-def draw_colours(rng):
-    """Colours of a home's walls, floor and ceiling."""
-    return {part: rng.normal(means[rng.integers(len(means))], 6).clip(0, 255).astype(int).tolist()
-            for part, means in SHELLS.items()}
-
-
-def assemble(name, rooms, gaps, objects, colours):
+def assemble(name, rooms, gaps, objects):
     """The floor plan as a plain dict."""
     segments = [gap.segment for gap in gaps]
     states = {"door": "open", "front door": "closed"}  # an opening has no door
     return {
-        "name": name, "units": "m", "wall_height": WALL_HEIGHT_M, "colors": colours,
+        "name": name, "units": "m", "wall_height": WALL_HEIGHT_M,
         "walls": [part for wall in draw_walls(rooms) for part in cut(wall, segments)],
         "doors": [{"segment": list(gap.segment), "height": DOOR_HEIGHT_M, "state": states[gap.kind]}
                   for gap in gaps if gap.kind in states],

@@ -21,3 +21,15 @@ def class_of(name):
     """Index of a class by its name, without regard to case; a name that is no class is `other`."""
     name = str(name).strip().lower()
     return CLASSES.index(name) if name in CLASSES else OTHER
+
+
+# Indices 1..150 of the ADE20K scene parsing benchmark that are one of the ten; all others, and 0, are `other`.
+# The strict reading: only the class itself ("bed"), not its relatives ("cradle").
+ADE20K = {1: WALL, 4: FLOOR, 6: CEILING, 8: BED, 15: DOOR, 16: TABLE, 24: SOFA, 51: REFRIGERATOR, 90: TV}
+
+
+def from_ade20k(labels):
+    """Labels of the ten classes from ADE20K's indices 0..150, of any shape."""
+    table = np.full(151, OTHER, np.uint8)
+    table[list(ADE20K)] = list(ADE20K.values())
+    return table[labels]

@@ -16,7 +16,7 @@ from .camera import render
 from .nn import softmax
 from .particles import FLOOR, ParticleFilter
 from .ranks import reciprocal_ranks
-from .scene_graph import scene_graph
+from .scene_graph import join, scene_graph
 
 LENGTH = 4
 SIDE_BY_SIDE = 32  # episodes in lockstep: some fifty calls of NumPy cost the same for one as for many
@@ -40,6 +40,15 @@ class Senses:
             labels = self.timed("labels", segnet.predict, self.net, rgb)
         self.views += len(poses)
         return self.timed("graph", scene_graph, labels)
+
+    def look_around(self, poses, rng, progress=None, at_once=128):
+        """The same for any number of poses, some at once; progress(share done)."""
+        parts = []
+        for i in range(0, len(poses), at_once):
+            parts.append(self.look(poses[i:i + at_once], rng))
+            if progress:
+                progress(min(1, (i + at_once) / len(poses)))
+        return join(parts)
 
     def scores(self, poses, rng):
         """Scores of all places for the view from each pose: (B, 3) -> (B, K)."""
@@ -145,7 +154,10 @@ def best_sequence(senses, robot, grid, starts, seed, length=LENGTH, progress=Non
     Every sequence is tried from every start, in a tree: from each belief all actions, with common random numbers.
     """
     total = np.zeros(planners.N_ACTIONS ** length)
-    for group in np.array_split(starts, -(-len(starts) // 2)):
+    groups = np.array_split(starts, -(-len(starts) // 2))
+    for done, group in enumerate(groups):
+        if progress:
+            progress(done / len(groups))
         appearance, motion, filtering, _ = map(np.random.default_rng, _seed(seed).spawn(4))
         seed = _seed(seed).spawn(1)[0]
         poses = np.array(group)

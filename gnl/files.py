@@ -37,7 +37,7 @@ def save_arrays(path, made_by, **arrays):
     """Save named arrays and `made_by`, a JSON-able description of what produced them, as .npz."""
     buffer = io.BytesIO()
     header = json.dumps({"format": FORMAT, "made_by": made_by}, sort_keys=True)
-    np.savez_compressed(buffer, header=np.frombuffer(header.encode(), np.uint8), **arrays)
+    np.savez(buffer, header=np.frombuffer(header.encode(), np.uint8), **arrays)
     write_whole(path, buffer.getvalue())
 
 

@@ -32,7 +32,7 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
     degree = np.bincount(rows, minlength=n_nodes)
-    order = np.lexsort((columns, rows))
+    order = np.argsort(rows * n_nodes + columns)
     rows, columns = rows[order], columns[order]
     values = (1 / np.sqrt(degree[rows] * degree[columns])).astype(dtype)
     return csr_matrix((values, columns, np.append(0, np.cumsum(degree))), (n_nodes, n_nodes))
@@ -49,23 +49,33 @@ def graph_convolution_forward(node_features, adjacency, weight, bias):
 
 
 def graph_convolution_backward(dout, cache):
-    """dout (N, G) -> dH (N, F), dW (F, G), db (G,):  dH = A_hat^T dout W^T,  dW = (A_hat H)^T dout."""
+    """dout (N, G) -> dH (N, F), dW (F, G), db (G,):  dH = A_hat dout W^T,  dW = (A_hat H)^T dout."""
     AH, A, W = cache
-    return A.T @ (dout @ W.T), AH.T @ dout, dout.sum(0)
+    return A @ (dout @ W.T), AH.T @ dout, dout.sum(0)  # A_hat is symmetric
 
 
 def mean_forward(node_features, starts):
     """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero."""
     count = np.diff(starts)
-    member = csr_matrix((np.repeat(1 / count.clip(1), count).astype(node_features.dtype),
-                         np.arange(len(node_features)), starts), (len(count), len(node_features)))
-    return member @ node_features, (member,)
+    some = np.flatnonzero(count)
+    out = np.zeros((len(count), node_features.shape[1]), node_features.dtype)
+    out[some] = np.add.reduceat(node_features, starts[some]) / count[some, None].astype(out.dtype)
+    return out, (count,)
 
 
 def mean_backward(dout, cache):
     """Every node of a graph gets the same share: (B, F) -> (N, F)."""
-    member, = cache
-    return member.T @ dout
+    count, = cache
+    return np.repeat(dout / count.clip(1)[:, None].astype(dout.dtype), count, axis=0)
+
+
+def lookup_backward(dout, words, n_words):
+    """X^T dout for one-hot X: each word gathers the gradients of its nodes, (N, F) -> (n_words, F)."""
+    order = np.argsort(words, kind="stable")
+    present, first = np.unique(words[order], return_index=True)
+    dW = np.zeros((n_words, dout.shape[1]), dout.dtype)
+    dW[present] = np.add.reduceat(dout[order], first) if len(words) else 0
+    return dW
 
 
 class GCN:
@@ -112,9 +122,7 @@ class GCN:
         dH1, grads["W2"], grads["b2"] = graph_convolution_backward(dZ2, conv2)
         dZ1 = relu_backward(dH1, relu1)
         grads["b1"] = dZ1.sum(0)
-        n_words = len(self.params["W1"])
-        pick = csr_matrix((np.ones(len(words), dZ1.dtype), words, np.arange(len(words) + 1)), (len(words), n_words))
-        grads["W1"] = pick.T @ (A.T @ dZ1)  # X^T: each word gathers the gradients of its nodes
+        grads["W1"] = lookup_backward(A @ dZ1, words, len(self.params["W1"]))
         return grads
 
     def save(self, path, made_by):

@@ -139,9 +139,15 @@ class Adam:
         rate = (self.rate if rate is None else rate) * np.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
         for name, g in grads.items():
             m, v = self.m[name], self.v[name]
-            m += (1 - self.beta1) * (g - m)
-            v += (1 - self.beta2) * (g * g - v)
-            self.params[name] -= rate * m / (np.sqrt(v) + self.eps)
+            m *= self.beta1
+            m += (1 - self.beta1) * g
+            v *= self.beta2
+            v += (1 - self.beta2) * g ** 2
+            step = np.sqrt(v)
+            step += self.eps
+            np.divide(m, step, out=step)
+            step *= rate
+            self.params[name] -= step
 
 
 def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):

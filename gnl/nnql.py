@@ -11,6 +11,7 @@ ones; a pair that was met before has its own value.
 
 import numpy as np
 
+from .files import load_arrays, save_arrays
 from .rank_index import RankIndex
 
 K_NEIGHBOURS, ALPHA, GAMMA = 4, 0.1, 0.9
@@ -105,6 +106,38 @@ class NNQL:
                 values[changed] = value
             past.values.append(values)
         return past
+
+    def save(self, path, made_by):
+        """Write states, values and checkpoints, and what made them."""
+        arrays = {}
+        for a, index in enumerate(self.index):
+            entries = [entry[a] for entry in self.log]
+            arrays |= {f"states{a}": index.points, f"values{a}": self.values[a],
+                       f"born{a}": np.array([born for born, _, _ in entries], int),
+                       f"n_changed{a}": np.array([len(changed) for _, changed, _ in entries], int),
+                       f"changed{a}": np.concatenate([np.empty(0, np.int32), *(c for _, c, _ in entries)]),
+                       f"changed_to{a}": np.concatenate([np.empty(0), *(v for _, _, v in entries)])}
+        save_arrays(path, made_by, **arrays)
+
+    @classmethod
+    def load(cls, path, **settings):
+        """The store of a file of `save`, and what made it."""
+        arrays, made_by = load_arrays(path)
+        n_actions = sum(name.startswith("states") for name in arrays)
+        if not n_actions:
+            raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
+        store = cls(arrays["states0"].shape[1], n_actions, **settings)
+        entries = []
+        for a in range(n_actions):
+            if len(arrays[f"states{a}"]):
+                store.index[a].add(arrays[f"states{a}"])
+            store.values[a] = arrays[f"values{a}"]
+            cuts = np.cumsum(arrays[f"n_changed{a}"])[:-1]
+            entries.append(zip(arrays[f"born{a}"].tolist(), np.split(arrays[f"changed{a}"], cuts),
+                               np.split(arrays[f"changed_to{a}"], cuts), strict=False))
+        store.log = [list(entry) for entry in zip(*entries, strict=False)] if len(arrays["born0"]) else []
+        store._logged = [past.copy() for past in store.at(len(store.log) - 1).values] if store.log else store._logged
+        return store, made_by
 
 
 def _past_cannot_learn(*_):

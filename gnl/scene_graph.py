@@ -32,8 +32,9 @@ class SceneGraphs:
 
     words: np.ndarray  # (N,) int
     boxes: np.ndarray  # (N, 4) px, half-open (x0, y0, x1, y1)
-    edges: np.ndarray  # (E, 2) int, nodes i < j
+    edges: np.ndarray  # (E, 2) int, nodes i < j, sorted
     starts: np.ndarray  # (B + 1,) int: graph b holds the nodes starts[b]:starts[b + 1]
+    edge_starts: np.ndarray  # (B + 1,) int: and the edges edge_starts[b]:edge_starts[b + 1]
 
     def __len__(self):
         return len(self.starts) - 1
@@ -46,10 +47,10 @@ class SceneGraphs:
         """The graphs `chosen` (n,), in that order, repeats allowed."""
         chosen = np.asarray(chosen)
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
-        first_edge = np.searchsorted(self.edges[:, 0], self.starts)  # edges are sorted by their first node
-        edge_starts, edges = _spread(first_edge[chosen], first_edge[chosen + 1])
+        edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
         shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))
-        return SceneGraphs(self.words[nodes], self.boxes[nodes], self.edges[edges] + shift[:, None], starts)
+        return SceneGraphs(self.words[nodes], self.boxes[nodes], self.edges[edges] + shift[:, None], starts,
+                           edge_starts)
 
 
 def _spread(begin, end):
@@ -57,6 +58,16 @@ def _spread(begin, end):
     count = end - begin
     starts = np.append(0, np.cumsum(count))
     return starts, np.arange(starts[-1]) + np.repeat(begin - starts[:-1], count)
+
+
+def join(parts):
+    """One batch of the graphs of several."""
+    node = np.append(0, np.cumsum([len(part.words) for part in parts]))
+    edge = np.append(0, np.cumsum([len(part.edges) for part in parts]))
+    return SceneGraphs(np.concatenate([part.words for part in parts]), np.concatenate([part.boxes for part in parts]),
+                       np.concatenate([part.edges + n for part, n in zip(parts, node[:-1], strict=True)]),
+                       np.concatenate([[0], *(part.starts[1:] + n for part, n in zip(parts, node[:-1], strict=True))]),
+                       np.concatenate([[0], *(p.edge_starts[1:] + n for p, n in zip(parts, edge[:-1], strict=True))]))
 
 
 def scene_graph(labels):
@@ -75,7 +86,8 @@ def scene_graph(labels):
     kept = area * scale[0] * scale[1] >= SMALLEST_REGION_PX
     view, boxes = view[kept], boxes[kept] * scale
     starts = np.searchsorted(view, np.arange(len(labels) + 1))
-    return SceneGraphs(word_of(label[kept], boxes), boxes, edges_of(boxes, starts), starts)
+    edges = edges_of(boxes, starts)
+    return SceneGraphs(word_of(label[kept], boxes), boxes, edges, starts, np.searchsorted(edges[:, 0], starts))
 
 
 def regions(labels):

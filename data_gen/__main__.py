@@ -1,0 +1,50 @@
+"""python -m data_gen: write homes and training views to files, for `python -m gnl` to learn from."""
+
+import argparse
+from pathlib import Path
+
+from gnl.files import load_arrays, save_arrays
+from gnl.terminal import Stage, guarded
+
+from .rooms import make_home
+from .views import training_views
+
+
+def home(args):
+    """One procedural home as a floor plan."""
+    make_home(args.seed, args.aliasing).save(args.out)
+
+
+def views(args):
+    """Views of many homes and their true labels, unless the file has just these already."""
+    made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise}
+    if Path(args.out).exists() and load_arrays(args.out)[1] == made_by:
+        return
+    stage = Stage("homes")
+    rgb, labels = training_views(args.homes, args.views, args.seed, args.noise, stage)
+    save_arrays(args.out, made_by, rgb=rgb, labels=labels)
+    stage.done(f"{args.homes} furnished homes drawn, {args.views} views rendered to learn from")
+
+
+def main(argv=None):
+    """Parse the command line and run; exit status 2 and one line for what cannot be done."""
+    parser = argparse.ArgumentParser(prog="python -m data_gen", description=__doc__.partition(": ")[2])
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    command = commands.add_parser("home", help="draw a procedural home")
+    command.add_argument("out", help="floor plan to write (.json)")
+    command.add_argument("--seed", type=int, default=800)
+    command.add_argument("--aliasing", type=float, default=0.3, help="0..1, how alike rooms are (0.3)")
+    command.set_defaults(run=home)
+    command = commands.add_parser("views", help="render views to train the segmentation net on")
+    command.add_argument("out", help="file of arrays to write (.npz)")
+    command.add_argument("--homes", type=int, default=60)
+    command.add_argument("--views", type=int, default=2400)
+    command.add_argument("--seed", type=int, default=0)
+    command.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
+    command.set_defaults(run=views)
+    args = parser.parse_args(argv)
+    guarded("python -m data_gen", args.run, args)
+
+
+if __name__ == "__main__":
+    main()

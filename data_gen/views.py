@@ -1,0 +1,41 @@
+"""Training views for the segmentation net: what a robot sees in many homes, and the true labels.
+
+The paper takes a net "off the shelf", trained on other images than those of its worlds. So the homes here are other
+homes than those in which a robot is localized: seeds from 0 on, where the worlds have 800 and more.
+"""
+
+import numpy as np
+
+from gnl.camera import render
+from gnl.classes import N_CLASSES
+from gnl.segnet import SIZE_PX
+
+from .rooms import make_home
+
+FIRST_WORLD_SEED = 800
+CLASSES_IN_VIEW = 3  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
+
+
+def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
+    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with at least three classes.
+
+    returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
+    """
+    if not 1 <= n_homes <= FIRST_WORLD_SEED:
+        raise ValueError(f"homes: expected 1..{FIRST_WORLD_SEED}, found {n_homes}")
+    if n_views < 1:
+        raise ValueError(f"views: expected at least 1, found {n_views}")
+    rng, rgb, labels = np.random.default_rng(seed), [], []
+    for home in range(n_homes):
+        wanted = n_views * (home + 1) // n_homes - n_views * home // n_homes
+        world, found = make_home(home), 0
+        while found < wanted:
+            image, label = render(world, world.free_poses(2 * wanted, rng), rng, SIZE_PX, noise)
+            seen = (label.reshape(len(label), -1, 1) == np.arange(N_CLASSES)).sum(1) >= 0.01 * SIZE_PX ** 2
+            good = np.flatnonzero(seen.sum(1) >= CLASSES_IN_VIEW)[:wanted - found]
+            rgb.append(image[good])
+            labels.append(label[good])
+            found += len(good)
+        if progress:
+            progress((home + 1) / n_homes)
+    return np.concatenate(rgb), np.concatenate(labels)

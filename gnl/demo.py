@@ -1,0 +1,165 @@
+"""The demonstration: every stage of the paper learns from scratch, then a robot finds out where it is."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import draw, episode, learned, planners, replay, segnet
+from .camera import render
+from .compare import paired_difference
+from .files import load_arrays
+from .places import PlaceGrid
+from .ranks import reciprocal_ranks
+from .robot import ACTIONS, Robot
+from .scene_graph import scene_graph
+from .strip import cast
+from .terminal import Stage
+from .world import World
+
+COMPARED = ("MV", "SV"), ("Scan", "MV"), ("Ours", "MV"), ("Ours", "Scan")
+TRIES = 40  # episodes looked through for one that starts in doubt and ends well
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How much the demonstration learns and tests; the paper's own numbers stand behind."""
+
+    net_epochs: int = 4
+    gcn_views: int = 6000  # 10,000
+    gcn_epochs: int = 25  # 100
+    episodes: int = 1500  # 10,000
+    scan_starts: int = 24
+    tests: int = 320  # 100
+
+
+def add_arguments(parser):
+    """Options of `python -m gnl demo`."""
+    parser.add_argument("--plan", required=True, help="floor plan of the home (.json)")
+    parser.add_argument("--views", required=True, help="training views of other homes, from `python -m data_gen views`")
+    parser.add_argument("--out", default="out", help="folder for what is learned and drawn (out)")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--noise", type=float, default=1.0, help="appearance noise of the views (1)")
+    for name, default in vars(Scale()).items():
+        parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=default, help=f"({default})")
+
+
+def run(args):
+    """Learn what is not learned yet, test the methods on the same starts, draw; at most 25 lines of output."""
+    check(args)
+    out, scale = Path(args.out), Scale(**{name: getattr(args, name) for name in vars(Scale())})
+    world = World.load(args.plan)
+    grid, robot = PlaceGrid(world), Robot(world)
+    x0, y0, x1, y1 = world.bounds
+    print(f"{world.name}: {x1 - x0:.1f} x {y1 - y0:.1f} m, {len(world.plan.get('objects', []))} objects, "
+          f"{grid.n_places} places ({grid.nx} x {grid.ny} cells x {grid.n_bearings} bearings)")
+
+    parts = out / "learned"
+    stage = Stage("net")
+    views, views_made_by = load_arrays(args.views)
+    net = learned.segmentation_net(parts, (views["rgb"], views["labels"]), views_made_by, scale.net_epochs,
+                                   args.seed, stage)
+    seen, true = render(world, world.free_poses(200, rng(args, 1)), rng(args, 2), segnet.SIZE_PX, args.noise)
+    right, overlap = segnet.accuracy(segnet.predict(net, seen), true)
+    stage.done(f"segmentation of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
+
+    stage = Stage("gcn")
+    senses = episode.Senses(world, net, None, args.noise)
+    settings = {"plan": learned.digest(world.plan), "noise": args.noise,
+                "net": learned.digest([views_made_by, scale.net_epochs, args.seed])}
+    senses.gcn = learned.place_classifier(parts, senses, grid, scale.gcn_views, scale.gcn_epochs, args.seed, settings,
+                                          stage)
+    poses = world.free_poses(500, rng(args, 3))
+    first, third = learned.top_places(senses.gcn, senses.look_around(poses, rng(args, 4)), grid.place_of(poses))
+    stage.done(f"place from one new view: right {first:.0%}, among the first three {third:.0%}")
+
+    settings |= {"gcn": [scale.gcn_views, scale.gcn_epochs, args.seed]}
+    stage = Stage("nnql")
+    store = learned.q_values(parts, senses, robot, grid, scale.episodes, args.seed, settings, stage)
+    stage.done(f"{scale.episodes} episodes, {sum(map(len, store.values))} state-action pairs remembered")
+    stage = Stage("scan")
+    sequence = learned.fixed_scan(parts, senses, robot, grid, scale.scan_starts, args.seed, settings, stage)
+    stage.done(f"best fixed sequence: {', '.join(ACTIONS[a] for a in sequence)}")
+
+    stage = Stage("test")
+    starts = world.free_poses(scale.tests, rng(args, 5))
+    senses.seconds, senses.views = {}, 0
+    plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours": planners.greedy(store)}
+    records = {}
+    for i, (name, plan) in enumerate(plans.items()):
+        stage(i / len(plans), name)
+        records[name] = episode.run_all(senses, robot, grid, plan, starts, args.seed + 6)
+    stage.done(f"{scale.tests} episodes of each method, from the same starts with the same noise")
+    print_table(records)
+    print_costs(senses)
+
+    stage = Stage("draw")
+    draw_stages(out / "demo", world, grid, senses, starts, rng(args, 7))
+    looks = telling_episode(senses, robot, grid, store, starts, args.seed, stage)
+    replay.save_gif(looks, world, grid, out / "demo" / "episode.gif")
+    stage.done(f"home, view, labels, strip, graph, ranks and episode.gif in {out / 'demo'}")
+
+
+def check(args):
+    """ValueError for an option that cannot be."""
+    for name in (*vars(Scale()), "seed"):
+        least = 0 if name == "seed" else 2 if name == "tests" else 1
+        if getattr(args, name) < least:
+            raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
+    if not 0 <= args.noise <= 10:
+        raise ValueError(f"--noise: expected 0..10, found {args.noise}")
+
+
+def rng(args, stream):
+    """An independent stream of random numbers for each use."""
+    return np.random.default_rng([args.seed, stream])
+
+
+def print_table(records):
+    """Top-1 accuracy after each look, and paired differences after the last, in percentage points."""
+    right = {"SV": records["MV"].correct[:, :1], **{name: record.correct for name, record in records.items()}}
+    n_looks = records["MV"].correct.shape[1]
+    print(f"{'top-1 [%] after look':<22}" + "".join(f"{look:>6}" for look in range(1, n_looks + 1))
+          + "    paired difference, 95 % interval")
+    for (name, correct), (a, b) in zip(right.items(), COMPARED, strict=True):
+        d, low, high = (100 * value for value in paired_difference(right[a][:, -1], right[b][:, -1]))
+        print(f"  {name:<20}" + "".join(f"{100 * share:6.1f}" for share in correct.mean(0)).ljust(6 * n_looks)
+              + f"    {a + ' - ' + b:<11} {d:+5.1f}  [{low:+.1f}, {high:+.1f}]")
+
+
+def print_costs(senses):
+    """Milliseconds a view of each stage, episodes side by side."""
+    cost = {stage: 1000 * seconds / senses.views for stage, seconds in senses.seconds.items()}
+    print("ms a view: " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
+    print(f"           {sum(cost.values()):.2f} in all; the paper: graph 18, GCN 0.10, planning 10")
+
+
+def draw_stages(folder, world, grid, senses, starts, stream):
+    """A picture of the home, and of each stage for the start whose view has most to tell."""
+    graphs = senses.look_around(starts, stream)
+    best = np.diff(graphs.starts).argmax()
+    pose = starts[best:best + 1]
+    large, _ = render(world, pose, stream, noise=senses.noise)
+    small, true = render(world, pose, stream, segnet.SIZE_PX, senses.noise)
+    labels = true if senses.net is None else segnet.predict(senses.net, small)
+    graph = senses.timed("graph", scene_graph, labels)
+    values = reciprocal_ranks(senses.gcn.scores(graph))[0]
+    strip = [part[0] for part in cast(world, pose).dense()]
+    pictures = {
+        "1-home": draw.home(world, 900, grid, starts), "2-view": draw.view(large[0], 512),
+        "3-labels": draw.labels(labels[0], 512), "4-strip": draw.strip(world, strip, 512, 256),
+        "5-graph": draw.graph(graph, draw.view(large[0], 512)),
+        "6-ranks": draw.ranks(grid, values, int(grid.place_of(pose)[0]), 10, 320)}
+    for name, picture in pictures.items():
+        draw.save_png(picture, folder / f"{name}.png")
+
+
+def telling_episode(senses, robot, grid, store, starts, seed, progress):
+    """An episode of Ours that starts with a wrong answer and ends with a right one; else the last one tried."""
+    for i, start in enumerate(starts[:TRIES]):
+        looks = replay.collect(senses, robot, grid, planners.greedy(store), start, [seed, i], store)
+        right = [look.answer == look.place for look in looks]
+        if right[-1] and right[-2] and not right[0] and not right[1]:
+            break
+        progress((i + 1) / TRIES)
+    return looks

@@ -1,0 +1,53 @@
+"""Scene graphs of label images from elsewhere: any picture of class indices, ours or ADE20K's."""
+
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from . import draw
+from .classes import CLASSES, N_CLASSES, from_ade20k
+from .scene_graph import VIEW_PX, scene_graph, words_in_words
+
+
+def add_arguments(parser):
+    """Options of `python -m gnl graph`."""
+    parser.add_argument("labels", help="image of one class index a pixel, 0..9 in the order "
+                                       f"{', '.join(CLASSES)}")
+    parser.add_argument("--ade20k", action="store_true", help="the indices are ADE20K's 0..150, 0 for no label")
+    parser.add_argument("--out", help="picture to write (LABELS-graph.png beside the image)")
+
+
+def run(args):
+    """Print the graph, a node a line, and draw it over the labels."""
+    labels = load(args.labels, args.ade20k)
+    graph = scene_graph(labels)
+    print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels, {len(graph.words)} nodes, "
+          f"{len(graph.edges)} edges")
+    for i, ((label, size, location), box) in enumerate(zip(words_in_words(graph.words), graph.boxes, strict=True)):
+        neighbours = sorted({*graph.edges[graph.edges[:, 0] == i, 1], *graph.edges[graph.edges[:, 1] == i, 0]})
+        print(f"{i:3}  {CLASSES[label]}, {draw.SIZES[size]}, {draw.LOCATIONS[location]}  word {graph.words[i]}  "
+              f"box {' '.join(f'{v:.0f}' for v in box)}  next to {' '.join(map(str, neighbours)) or 'none'}")
+    out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
+    rows, columns = (np.arange(VIEW_PX) * n // VIEW_PX for n in labels.shape)
+    draw.save_png(draw.graph(graph, draw.labels(labels[rows[:, None], columns], VIEW_PX)), out)
+    print(f"drawn in {out}")
+
+
+def load(path, ade20k=False):
+    """Labels (H, W) in 0..9 from an image of indices; ValueError that names what is wrong with it."""
+    try:
+        with Image.open(path) as image:
+            image.load()
+            if image.mode not in ("L", "P", "I", "I;16", "1"):
+                raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
+            labels = np.array(image).astype(int)
+    except FileNotFoundError:
+        raise ValueError(f"{path}: expected a label image, found nothing") from None
+    except (UnidentifiedImageError, OSError) as error:
+        raise ValueError(f"{path}: expected an image, found something else ({error})") from None
+    highest = 150 if ade20k else N_CLASSES - 1
+    if labels.min() < 0 or labels.max() > highest:
+        hint = "" if ade20k or labels.max() > 150 else "; --ade20k for indices of ADE20K"
+        raise ValueError(f"{path}: expected indices 0..{highest}, found {labels.min()}..{labels.max()}{hint}")
+    return from_ade20k(labels) if ade20k else labels

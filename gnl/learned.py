@@ -1,0 +1,93 @@
+"""Learned parts, each kept in a file: learnt when it is not there yet, loaded when it is.
+
+A file's name carries a digest of all that went into it (settings, seed, floor plan, training views), so other
+settings make another file and never a wrong answer.
+"""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+
+from . import episode, gcn, nnql, segnet
+from .files import load_arrays, save_arrays
+from .ranks import ranks
+
+
+def digest(settings):
+    """Eight hex digits of anything that JSON can hold."""
+    return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()[:8]
+
+
+def kept(folder, name, settings, load, learn):
+    """load(path) of the part `name` made with `settings`, or learn(path), which must write it."""
+    path = Path(folder) / f"{name}-{digest(settings)}.npz"
+    return load(path)[0] if path.exists() else learn(path)
+
+
+def segmentation_net(folder, views, views_made_by, epochs, seed, stage):
+    """Weights of the net trained on `views` (rgb, labels)."""
+    settings = {"views": views_made_by, "epochs": epochs, "seed": seed}
+
+    def learn(path):
+        rng = np.random.default_rng(seed)
+        params = segnet.new_params(rng)
+        segnet.train(params, *views, rng, epochs, progress=lambda share, loss: stage(share, f"loss {loss:.2f}"))
+        segnet.save(params, path, settings)
+        return params
+
+    return kept(folder, "net", settings, segnet.load, learn)
+
+
+def place_classifier(folder, senses, grid, n_views, epochs, seed, settings, stage):
+    """GCN trained on `n_views` views from random free poses; `settings` names what `senses` is made of."""
+    settings = {**settings, "views": n_views, "epochs": epochs, "seed": seed}
+
+    def learn(path):
+        rng = np.random.default_rng(seed)
+        poses = senses.world.free_poses(n_views, rng)
+        graphs = senses.look_around(poses, rng, lambda share: stage(0.5 * share, "looking around"))
+        network = gcn.GCN(grid.n_places, rng)
+        gcn.train(network, graphs, grid.place_of(poses), rng, epochs,
+                  progress=lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}"))
+        network.save(path, settings)
+        return network
+
+    return kept(folder, "gcn", settings, gcn.GCN.load, learn)
+
+
+def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):
+    """NNQL store after `n_episodes` training episodes from random starts."""
+    settings = {**settings, "episodes": n_episodes, "seed": seed}
+
+    def learn(path):
+        store = episode.train_nnql(senses, robot, grid, senses.world.free_poses, n_episodes, seed,
+                                   progress=lambda share, right: stage(share, f"right {right:.0%}"))
+        store.save(path, settings)
+        return store
+
+    return kept(folder, "nnql", settings, nnql.NNQL.load, learn)
+
+
+def fixed_scan(folder, senses, robot, grid, n_starts, seed, settings, stage):
+    """Best fixed action sequence over `n_starts` random starts."""
+    settings = {**settings, "starts": n_starts, "seed": seed}
+
+    def learn(path):
+        starts = senses.world.free_poses(n_starts, np.random.default_rng(seed))
+        sequence = episode.best_sequence(senses, robot, grid, starts, seed, progress=stage)
+        save_arrays(path, settings, sequence=sequence)
+        return sequence
+
+    def load(path):
+        arrays, made_by = load_arrays(path)
+        return arrays["sequence"], made_by
+
+    return kept(folder, "scan", settings, load, learn)
+
+
+def top_places(network, graphs, places):
+    """Share of views whose place is the classifier's first, and among its first three."""
+    rank = ranks(network.scores(graphs))[np.arange(len(places)), places]
+    return (rank == 1).mean(), (rank <= 3).mean()

@@ -1,0 +1,164 @@
+"""A replay: one episode as an animated picture that one understands without being told.
+
+On the left the home with the robot and its way (orange), the particles of its filter (violet) and the filter's
+answer: a cell and a bearing, green if right, red if wrong. On the right what the robot sees, what it makes of it,
+and what its planner thinks of each action. A frame for each look, one for each decision, some for the way between.
+"""
+
+import copy
+import io
+from dataclasses import dataclass, field
+
+import numpy as np
+from PIL import Image
+
+from . import draw
+from .camera import render
+from .episode import LENGTH, Senses, run
+from .files import write_whole
+from .places import wrap_angle
+from .robot import ACTIONS
+
+WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX = 960, 540, (448, 440), 240
+LOOK_S, MOTION_S, LAST_S, N_MOTION = 1.6, 0.12, 3.2, 3
+DECIDE, DOING = ("turn left", "turn right", "go forward"), ("turning left", "turning right", "going forward")
+
+
+@dataclass(frozen=True)
+class Look:
+    """All that one look of an episode shows."""
+
+    pose: np.ndarray  # (3,) true pose
+    place: int  # true place
+    answer: int  # place that the filter names
+    pooled: np.ndarray  # (K,) its belief
+    particles: tuple  # x, y, theta, weight, (M,) each
+    states: np.ndarray  # (K,) reciprocal ranks of this view
+    view: np.ndarray  # (240, 240, 3) what the camera sees
+    labels: np.ndarray  # (64, 64) what the net makes of it
+    graph: object  # SceneGraphs of this view
+    q: np.ndarray  # (A,) values of the next actions, or None
+    action: int = None  # that led here, or None
+
+
+@dataclass
+class Witness(Senses):
+    """Senses that remember what each stage made of the latest look, and the photograph in large."""
+
+    latest: dict = field(default_factory=dict)
+
+    def timed(self, stage, function, *args):
+        """function(*args), remembered."""
+        if stage == "view":  # light and exposure are drawn before the pixels: the large photograph is the same
+            world, poses, rng, _, noise = args
+            self.latest["large"] = render(world, poses, copy.deepcopy(rng), VIEW_PX, noise)[0]
+        self.latest[stage] = function(*args)
+        return self.latest[stage]
+
+
+def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, length=LENGTH):
+    """Run one episode and keep what each look shows: list of Look; arguments as for episode.run."""
+    witness, looks = Witness(senses.world, senses.net, senses.gcn, senses.noise), []
+
+    def watch(step, poses, states, pooled, filter, **_):  # noqa: A002
+        seen = witness.latest
+        particles = tuple(a[0].copy() for a in (filter.x, filter.y, filter.theta, filter.weight))
+        looks.append(Look(
+            poses[0].copy(), int(grid.place_of(poses)[0]), int(pooled[0].argmax()), pooled[0], particles, states[0],
+            seen["large"][0], seen.get("labels", seen["view"][1])[0], seen["graph"],
+            nnql.q_values(states)[0] if nnql else None, int(seen["plan"][0]) if step else None))
+
+    run(witness, robot, grid, plan, start_pose[None], seed, length, watch=watch)
+    return looks
+
+
+def frames(looks, world, grid):
+    """Pictures of an episode and how long to show each: list of (PIL.Image, seconds)."""
+    home = draw.Map(world, *MAP_PX, grid)
+    panels = [_panels(look, grid) for look in looks]
+    shown = []
+    for t, (look, panel) in enumerate(zip(looks, panels, strict=True)):
+        after = f"after {DOING[look.action]}" if t else "at the start"
+        shown.append((_frame(home, panel, looks, t, look.pose, after), LOOK_S if look is not looks[-1] else LAST_S))
+        if look is looks[-1]:
+            break
+        action = looks[t + 1].action
+        shown.append((_frame(home, panel, looks, t, look.pose, f"decides to {DECIDE[action]}", action), LOOK_S))
+        for share in np.arange(1, N_MOTION + 1) / (N_MOTION + 1):
+            way = looks[t + 1].pose - look.pose
+            way[2] = wrap_angle(way[2])
+            shown.append((_frame(home, panel, looks, t, look.pose + share * way, DOING[action], action), MOTION_S))
+    return shown
+
+
+def gif(shown):
+    """Frames as an animated GIF that loops for ever, all in one palette: bytes."""
+    stills = [picture for picture, seconds in shown if seconds != MOTION_S]
+    wall = Image.new("RGB", (stills[0].width, stills[0].height * len(stills)))
+    for i, picture in enumerate(stills):
+        wall.paste(picture, (0, i * picture.height))
+    exact = [*draw.PALETTE.tolist(), draw.PAPER, draw.INK, draw.ROBOT, draw.RIGHT, draw.WRONG, draw.WALLS, *draw.TINTS]
+    n = 256 - len(exact)  # the colours with a meaning as they are, all others as near as the rest allows
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*wall.quantize(n, dither=Image.Dither.NONE).getpalette()[:3 * n], *sum(map(list, exact), [])])
+    flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture, _ in shown]
+    data = io.BytesIO()
+    flat[0].save(data, "GIF", save_all=True, append_images=flat[1:], loop=0, optimize=False,
+                 duration=[round(1000 * seconds) for _, seconds in shown])
+    return data.getvalue()
+
+
+def save_gif(looks, world, grid, path):
+    """Write the replay of an episode, whole or not at all."""
+    write_whole(path, gif(frames(looks, world, grid)))
+
+
+def _panels(look, grid):
+    """What a look is and says, in pictures: view, graph on labels, ranks, belief."""
+    return (draw.view(look.view, VIEW_PX), draw.graph(look.graph, draw.labels(look.labels, VIEW_PX), full=False),
+            draw.ranks(grid, look.states, look.place, 6, 176), draw.ranks(grid, look.pooled, look.place, 6, 176))
+
+
+def _frame(home, panel, looks, t, pose, doing, action=None):
+    """One picture: look t, the robot at `pose`; `action` is the one that the planner has chosen, if it has."""
+    page, look, right = draw.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
+    verdict = draw.RIGHT if right else draw.WRONG
+    plan = home.copy()
+    plan.particles(look.particles)
+    plan.place(look.answer, verdict)
+    plan.sight(pose)
+    plan.path([*(earlier.pose for earlier in looks[:t + 1]), pose])
+    plan.robot(pose)
+    page.paste(plan.picture(), 8, 48)
+    page.paste(draw.legend(), 28, 506)
+
+    page.text((28, 28), f"look {t + 1} of {len(looks)}", 20)
+    page.text((146, 29), doing, 15, draw.ROBOT)
+    titles = "the robot sees", "it recognises", "this view says", "the filter believes", "next action"
+    for title, picture, x, y in zip(titles, [*panel, _actions(look.q, action)], (464, 712, 464, 648, 832),
+                                    (72, 72, 348, 348, 348), strict=True):
+        page.text((x, y - 13), title, 13)
+        page.paste(picture, x, y)
+    page.text((464, 488), f"answer {'right' if right else 'wrong'}", 16, verdict)
+    page.text((580, 489), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
+    for i, other in enumerate(looks):  # how the answers were so far
+        colour = draw.FAINT if i > t else draw.RIGHT if other.answer == other.place else draw.WRONG
+        page.disc((948 - 18 * (len(looks) - 1 - i) - 4, 28), 6, colour)
+    return page.picture()
+
+
+def _actions(q, chosen, width_px=120, line_px=38):
+    """The values of the actions (A,), if known, as bars from a common zero; the chosen one in orange."""
+    page = draw.Canvas(width_px, line_px * len(ACTIONS))
+    low, high = (min(0, *q), max(0, *q)) if q is not None else (0, 0)
+    scale = (width_px - 3) / max(high - low, 1e-9)
+    zero = 1 - low * scale
+    for a, name in enumerate(ACTIONS):
+        y, ink = line_px * a + 9, draw.ROBOT if a == chosen else draw.INK
+        page.text((0, y), name, 12, ink)
+        if q is not None:
+            page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
+            x0, x1 = sorted((zero, zero + q[a] * scale))
+            page.polygon([(x0, y + 9), (x1, y + 9), (x1, y + 19), (x0, y + 19)], draw.BAR if a != chosen else ink)
+            page.line([(zero, y + 7), (zero, y + 21)])
+    return page.picture()

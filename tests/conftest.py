@@ -1,0 +1,94 @@
+"""Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones that are there."""
+
+import copy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import data_gen
+from data_gen.rooms import make_home
+from gnl.world import World
+
+FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
+FOUND = sorted((Path(__file__).parents[2] / "shared" / "homes").glob("*.json"))
+
+
+def thing(kind, x, y, length, width, height, z0=0.0, angle=0.0):
+    """An object of a floor plan: a rectangle around (x, y), its length turned by `angle`."""
+    u, v = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    corners = [(length / 2, width / 2), (-length / 2, width / 2), (-length / 2, -width / 2), (length / 2, -width / 2)]
+    polygon = [[x + a * u[0] + b * v[0], y + a * u[1] + b * v[1]] for a, b in corners]
+    return {"class": kind, "polygon": polygon, "z0": z0, "height": height}
+
+
+def room(*things, size=(6.0, 4.0), **others):
+    """One room without doors, its lower left corner in the origin, and what is in it."""
+    x, y = size
+    return {"name": "room", "walls": [[0, 0, x, 0], [x, 0, x, y], [x, y, 0, y], [0, y, 0, 0]], "objects": list(things),
+            **others}
+
+
+TWO_ROOMS = {
+    "name": "two rooms", "units": "m", "wall_height": 2.5,
+    "walls": [[0, 0, 7, 0], [7, 0, 7, 4], [7, 4, 0, 4], [0, 4, 0, 2.4], [0, 1.5, 0, 0], [4, 0, 4, 1.0], [4, 1.9, 4, 4]],
+    "doors": [{"segment": [0, 1.5, 0, 2.4], "height": 2.0, "state": "closed"},
+              {"segment": [4, 1.9, 4, 1.0], "height": 2.0, "state": "open"}],
+    "rooms": [{"type": "bedroom", "polygon": [[0, 0], [4, 0], [4, 4], [0, 4]]},
+              {"type": "kitchen", "polygon": [[4, 0], [7, 0], [7, 4], [4, 4]]}],
+    "objects": [thing("bed", 1.1, 0.7, 1.9, 1.0, 0.5), thing("table", 1.2, 3.1, 1.2, 0.7, 0.74, angle=0.5),
+                thing("tv", 1.2, 3.1, 0.7, 0.1, 0.5, z0=0.74, angle=0.5), thing("sofa", 5.7, 3.2, 1.6, 0.8, 0.8, angle=-0.3),
+                thing("other", 2.6, 2.0, 0.5, 0.5, 0.4, z0=1.6, angle=0.2), thing("other", 5.6, 1.0, 1.4, 1.0, 0.02),
+                thing("refrigerator", 6.6, 0.4, 0.6, 0.6, 1.8)],
+}
+
+
+@pytest.fixture
+def two_rooms_plan():
+    """7 x 4 m: a shut front door in the west, an open door between; things turned, carried, hanging and flat."""
+    return copy.deepcopy(TWO_ROOMS)
+
+
+@pytest.fixture(scope="session")
+def two_rooms():
+    return World(copy.deepcopy(TWO_ROOMS))
+
+
+@pytest.fixture(scope="session", params=[1, 5])
+def home(request):
+    """A procedural home."""
+    return make_home(request.param)
+
+
+def strewn_plan(seed):
+    """An 8 x 5 m room strewn with boxes that do not touch: turned at random, some carried by others, some hanging."""
+    rng = np.random.default_rng(seed)
+    things = []
+    for x in range(8):
+        for y in range(5):
+            kind, angle = rng.choice(["bed", "table", "sofa", "refrigerator", "tv", "other"]), rng.uniform(0, np.pi)
+            length, width, height = rng.uniform(0.1, 0.55, 2).tolist() + [rng.uniform(0.1, 2.0)]
+            place = x + rng.uniform(0.45, 0.55), y + rng.uniform(0.45, 0.55)
+            if rng.random() < 0.5:
+                things.append(thing(str(kind), *place, length, width, height, 0.0, angle))
+            if rng.random() < 0.4:
+                part, rise = rng.uniform(0.3, 0.9), rng.choice([0.0, 0.1])
+                height_above = rng.uniform(0.05, 2.4 - height - rise)
+                things.append(thing("tv", *place, part * length, part * width, height_above, height + rise, angle))
+    return room(*things, size=(8.0, 5.0), name="strewn")
+
+
+@pytest.fixture(scope="session", params=[0, 1, 2])
+def strewn(request):
+    return World(strewn_plan(request.param))
+
+
+@pytest.fixture(scope="session", params=[FLAT, *FOUND], ids=lambda path: path.stem)
+def real_home_path(request):
+    """The flat that comes with gnl, and the homes beside the project where they are."""
+    return request.param
+
+
+@pytest.fixture(scope="session")
+def real_home(real_home_path):
+    return World.load(real_home_path)

@@ -1,0 +1,158 @@
+"""Files are whole or not there, and what is no file of ours is refused in one line."""
+
+import io
+import json
+import os
+
+import numpy as np
+import pytest
+
+from gnl.files import FORMAT, load_arrays, save_arrays, write_whole
+
+
+def header(**content):
+    return np.frombuffer(json.dumps(content).encode(), np.uint8)
+
+
+def test_a_file_holds_what_was_written_in_folders_that_are_made(tmp_path):
+    write_whole(tmp_path / "a" / "b" / "file.bin", b"first")
+    write_whole(tmp_path / "a" / "b" / "file.bin", b"second")
+    assert (tmp_path / "a" / "b" / "file.bin").read_bytes() == b"second"
+    assert os.listdir(tmp_path / "a" / "b") == ["file.bin"]
+
+
+def test_a_file_has_the_usual_rights(tmp_path):
+    write_whole(tmp_path / "ours", b"")
+    (tmp_path / "usual").touch()
+    assert (tmp_path / "ours").stat().st_mode == (tmp_path / "usual").stat().st_mode
+
+
+@pytest.mark.parametrize("stop", [OSError("disk full"), KeyboardInterrupt()], ids=["error", "ctrl-c"])
+@pytest.mark.parametrize("existed", [True, False])
+def test_an_interrupted_write_leaves_all_as_it_was(tmp_path, monkeypatch, stop, existed):
+    class HalfWay(io.FileIO):
+        def write(self, data):
+            super().write(data[:len(data) // 2])
+            raise stop
+
+    if existed:
+        (tmp_path / "file").write_bytes(b"old")
+    with monkeypatch.context() as patch, pytest.raises(type(stop)):
+        patch.setattr(os, "fdopen", HalfWay)
+        write_whole(tmp_path / "file", b"new and longer")
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"] * existed
+
+
+def test_a_failed_rename_leaves_all_as_it_was(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise PermissionError
+
+    (tmp_path / "file").write_bytes(b"old")
+    with monkeypatch.context() as patch, pytest.raises(PermissionError):
+        patch.setattr(os, "replace", refuse)
+        write_whole(tmp_path / "file", b"new")
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
+
+
+def test_arrays_come_back_bit_for_bit_with_what_made_them(tmp_path):
+    arrays = {"a": np.random.default_rng(0).normal(size=(3, 4)), "b": np.arange(5, dtype=np.uint8), "c": np.float32(0.1)}
+    save_arrays(tmp_path / "file.npz", {"seed": 3, "name": "home"}, **arrays)
+    loaded, made_by = load_arrays(tmp_path / "file.npz")
+    assert made_by == {"seed": 3, "name": "home"}
+    assert loaded.keys() == arrays.keys()
+    for name, array in arrays.items():
+        assert loaded[name].dtype == array.dtype
+        np.testing.assert_array_equal(loaded[name], array)
+
+
+def test_the_same_arrays_make_the_same_file(tmp_path):
+    for name in ("one", "two"):
+        save_arrays(tmp_path / name, {"seed": 1}, a=np.arange(3))
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+def missing(path):
+    pass
+
+
+def folder(path):
+    path.mkdir()
+
+
+def empty(path):
+    path.touch()
+
+
+def text(path):
+    path.write_text("wall floor ceiling")
+
+
+def single_array(path):
+    np.save(path.with_suffix(".npy"), np.arange(3))
+    path.with_suffix(".npy").rename(path)
+
+
+def pickles(path):
+    np.savez(path, header=header(format=FORMAT, made_by=0), a=np.array([{}], object))
+
+
+def no_header(path):
+    np.savez(path, a=np.arange(3))
+
+
+def header_of_numbers(path):
+    np.savez(path, header=np.full(3, 255, np.uint8))
+
+
+def header_of_a_list(path):
+    np.savez(path, header=np.frombuffer(b"[]", np.uint8))
+
+
+def header_without_maker(path):
+    np.savez(path, header=header(format=FORMAT))
+
+
+def other_version(path):
+    np.savez(path, header=header(format=FORMAT + 1, made_by=0))
+
+
+def truncated(path):
+    save_arrays(path, {}, a=np.arange(1000))
+    path.write_bytes(path.read_bytes()[:-100])
+
+
+def damaged_data(path):
+    save_arrays(path, {}, a=np.arange(1000))
+    path.write_bytes(path.read_bytes().replace(np.arange(500, 600).tobytes(), bytes(800)))
+
+
+def damaged_shape(path):
+    save_arrays(path, {}, a=np.arange(1000))
+    path.write_bytes(path.read_bytes().replace(b"'shape': (1000,)", b"'shape': ((100,)"))
+
+
+def unknown_packing(path):
+    save_arrays(path, {}, a=np.arange(1000))
+    path.write_bytes(path.read_bytes().replace(b"PK\1\2\x2d\3\x2d\0\0\0\0\0", b"PK\1\2\x2d\3\x2d\0\0\0\x63\0"))
+
+
+FAULTS = [missing, folder, empty, text, single_array, pickles, no_header, header_of_numbers, header_of_a_list,
+          header_without_maker, other_version, truncated, damaged_data, damaged_shape, unknown_packing]
+
+
+@pytest.mark.parametrize("make", FAULTS, ids=lambda make: make.__name__)
+def test_what_is_no_file_of_ours_is_refused_in_one_line(tmp_path, make):
+    path = tmp_path / "file.npz"
+    make(path)
+    with pytest.raises(ValueError) as refusal:
+        load_arrays(path)
+    line = str(refusal.value)
+    assert line.startswith(f"{path}: expected ")
+    assert "found" in line
+    assert "\n" not in line
+
+
+def test_another_version_is_named(tmp_path):
+    other_version(tmp_path / "file.npz")
+    with pytest.raises(ValueError, match=f"expected format version {FORMAT}, found {FORMAT + 1}"):
+        load_arrays(tmp_path / "file.npz")

@@ -1,0 +1,145 @@
+"""The net's gradient is right in every parameter, it learns, and it is blind to the camera's exposure."""
+
+import numpy as np
+import pytest
+
+from data_gen.rooms import make_home
+from gnl import nn, segnet
+from gnl.camera import render
+
+
+@pytest.fixture(scope="module")
+def views():
+    """Eight views of each of two homes: rgb, labels."""
+    rng = np.random.default_rng(0)
+    pairs = [render(home, home.free_poses(8, rng), rng, segnet.SIZE_PX) for home in (make_home(1), make_home(2))]
+    return tuple(np.concatenate(part) for part in zip(*pairs, strict=True))
+
+
+@pytest.fixture
+def params():
+    """A net in float64 in which no parameter is zero: a zero would hide what lies behind it."""
+    rng = np.random.default_rng(1)
+    params = segnet.new_params(rng, np.float64)
+    for p in params.values():
+        p += 0.1 * rng.standard_normal(p.shape)
+    return params
+
+
+def test_every_gradient_is_that_of_central_differences(params):
+    rng = np.random.default_rng(2)
+    rgb = rng.integers(256, size=(3, 16, 16, 3), dtype=np.uint8)
+    labels = rng.integers(10, size=(3, 16, 16))
+
+    def loss():
+        return nn.softmax_cross_entropy(segnet.forward(params, rgb)[0], labels)[0]
+
+    scores, cache = segnet.forward(params, rgb)
+    grads = segnet.backward(params, nn.softmax_cross_entropy(scores, labels)[1], cache)
+    assert scores.shape == (3, 16, 16, 10)
+    assert grads.keys() == params.keys()
+    for name, p in params.items():
+        assert grads[name].shape == p.shape
+        assert nn.gradient_error(loss, p, grads[name], rng, probes=8) < 1e-5, name
+
+
+def test_every_pixel_hears_of_every_other_one(params):
+    rgb = np.full((1, 64, 64, 3), 100, np.uint8)
+    rgb[0, ::2] += 50
+    far = rgb.copy()
+    far[0, :4, :4] = 255
+    before, after = (segnet.forward(params, image)[0] for image in (rgb, far))
+    assert (abs(after - before).max(-1) > 0).all()
+
+
+def test_a_new_residual_block_changes_nothing():
+    params = segnet.new_params(np.random.default_rng(0))
+    assert not any(params[f"block{i}.second.w"].any() for i in range(segnet.BLOCKS))
+    assert {p.dtype for p in params.values()} == {np.dtype(np.float32)}
+
+
+def test_standardised_views_have_no_offset_and_no_gain_of_exposure():
+    rgb = np.random.default_rng(0).integers(100, size=(2, 16, 16, 3), dtype=np.uint8)
+    seen = segnet.standardise(rgb, np.float64)
+    spread = rgb.reshape(2, -1).std(1)
+    np.testing.assert_allclose(seen[..., :3].reshape(2, -1).mean(1), 0, atol=1e-12)
+    np.testing.assert_allclose(seen[..., :3].reshape(2, -1).std(1), spread / (spread + 1))
+    np.testing.assert_allclose(segnet.standardise(rgb + np.uint8(90), np.float64), seen, atol=1e-12)
+    # The 1 in spread + 1 keeps a view of one colour finite; it costs 1 / spread of the gain.
+    np.testing.assert_allclose(segnet.standardise(rgb * np.uint8(2), np.float64)[..., :3], seen[..., :3],
+                               rtol=1 / spread.min())
+    assert not segnet.standardise(np.full((1, 8, 8, 3), 7, np.uint8))[..., :3].any()
+
+
+def test_each_row_knows_how_high_it_is():
+    height = segnet.standardise(np.zeros((2, 5, 5, 3), np.uint8))[..., 3]
+    np.testing.assert_array_equal(height, np.broadcast_to(np.array([1, .5, 0, -.5, -1])[:, None], (2, 5, 5)))
+
+
+def test_unfold_lays_out_a_pixel_as_two_by_two_and_fold_is_the_way_back():
+    x = np.random.default_rng(0).standard_normal((2, 3, 5, 4 * 7))
+    unfolded = segnet._unfold(x)
+    assert unfolded.shape == (2, 6, 10, 7)
+    np.testing.assert_array_equal(segnet._fold(unfolded), x)
+    np.testing.assert_array_equal(unfolded[1, 2:4, 6:8].reshape(-1), x[1, 1, 3])
+
+
+def test_a_little_training_halves_the_loss(views):
+    losses = []
+    params = segnet.new_params(np.random.default_rng(0))
+    segnet.train(params, *views, np.random.default_rng(0), epochs=30, batch=8,
+                 progress=lambda share, loss: losses.append((share, loss)))
+    assert [share for share, _ in losses] == [(i + 1) / 60 for i in range(60)]
+    loss = [loss for _, loss in losses]
+    assert np.mean(loss[-8:]) < 0.5 * np.mean(loss[:4])  # measured: 0.36
+    right, iou = segnet.accuracy(segnet.predict(params, views[0]), views[1])
+    assert 0.6 < right <= 1  # measured: 0.77
+    assert 0.1 < iou < right
+
+
+def test_one_seed_trains_one_net(views):
+    nets = [segnet.new_params(np.random.default_rng(0)) for _ in range(2)]
+    for net in nets:
+        segnet.train(net, *views, np.random.default_rng(5), epochs=2, batch=8)
+    for name in nets[0]:
+        np.testing.assert_array_equal(nets[0][name], nets[1][name])
+
+
+@pytest.mark.parametrize("chunk", [1, 3, 16])
+def test_labels_predicted_in_chunks_are_those_predicted_at_once(views, params, chunk):
+    at_once = segnet.forward(params, views[0])[0].argmax(-1)
+    labels = segnet.predict(params, views[0], chunk)
+    np.testing.assert_array_equal(labels, at_once)
+    assert labels.dtype == np.uint8
+
+
+def test_accuracy_of_a_case_worked_by_hand():
+    true = np.array([[[0, 0, 1], [1, 2, 2]]], np.uint8)
+    predicted = np.array([[[0, 1, 1], [1, 2, 9]]], np.uint8)
+    # Class 0: 1 of 2, class 1: 2 of 3, class 2: 1 of 2; class 9 does not occur in truth and is not asked for.
+    assert segnet.accuracy(predicted, true) == pytest.approx((4 / 6, (1 / 2 + 2 / 3 + 1 / 2) / 3))
+    assert segnet.accuracy(true, true) == (1, 1)
+    assert segnet.accuracy(9 - true, true) == (0, 0)
+
+
+def test_a_saved_net_is_read_back_as_it_was(tmp_path):
+    params = segnet.new_params(np.random.default_rng(0))
+    segnet.save(params, tmp_path / "net.npz", {"seed": 0})
+    again, made_by = segnet.load(tmp_path / "net.npz")
+    assert made_by == {"seed": 0}
+    assert again.keys() == params.keys()
+    for name, p in params.items():
+        np.testing.assert_array_equal(again[name], p)
+        assert again[name].dtype == p.dtype
+
+
+@pytest.mark.parametrize(("change", "complaint"), [
+    ({"head.w": np.zeros((3, 4))}, r"net\.npz: head\.w: expected shape \(32, 40\), found \(3, 4\)"),
+    ({"head.w": None}, r"net\.npz: head\.w: expected shape \(32, 40\), found None"),
+    ({"tail.w": np.zeros(2)}, r"net\.npz: tail\.w: expected shape None, found \(2,\)"),
+])
+def test_a_file_that_does_not_fit_is_refused(tmp_path, change, complaint):
+    params = segnet.new_params(np.random.default_rng(0)) | change
+    segnet.save({name: p for name, p in params.items() if p is not None}, tmp_path / "net.npz", "a test")
+    with pytest.raises(ValueError, match=complaint):
+        segnet.load(tmp_path / "net.npz")
