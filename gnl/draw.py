@@ -84,8 +84,9 @@ class Map(Canvas):
         room = np.array([width_px, height_px or np.inf]) - 2 * RIM_PX
         self.px_per_m = (room / (high - low)).min()
         self.upper_left = np.array([low[0], high[1]])
-        super().__init__(width_px, height_px or (high - low)[1] * self.px_per_m + 2 * RIM_PX)
-        self.shift = np.array([(self.width - (high - low)[0] * self.px_per_m) / 2, RIM_PX])
+        width, height = (high - low) * self.px_per_m
+        super().__init__(width_px, height_px or height + 2 * RIM_PX)
+        self.shift = np.array([self.width - width, self.height - height]) / 2
         self._floor()
         self._things()
         self._names()
@@ -159,12 +160,12 @@ class Map(Canvas):
 
     def _floor(self):
         rooms, g = self.world.plan.get("rooms", []), self.grid
-        kinds = sorted({room.get("type", "") for room in rooms})
+        kinds = sorted({str(room.get("type", "")) for room in rooms})
         for room in rooms:
-            self.polygon(self.at(room["polygon"]), TINTS[kinds.index(room.get("type", "")) % len(TINTS)])
+            self.polygon(self.at(room["polygon"]), TINTS[kinds.index(str(room.get("type", ""))) % len(TINTS)])
         if g:
             size = np.array([g.nx, g.ny])
-            for axis, name in ((0, lambda i: chr(65 + i)), (1, lambda i: str(i + 1))):
+            for axis, name in ((0, _column_name), (1, _row_name)):
                 along, across = np.eye(2)[axis], np.eye(2)[1 - axis]
                 for i in range(size[axis] + 1):
                     ends = [i * along, i * along + size * across]
@@ -191,10 +192,12 @@ class Map(Canvas):
         """Name each room where the fewest things are in the way."""
         w = self.world
         for room in w.plan.get("rooms", []):
-            name, parts = room.get("type", ""), np.array(cover_polygon(room["polygon"]))
+            name, parts = str(room.get("type", "")), np.array(cover_polygon(room["polygon"]))
             low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
-            spots = np.stack(np.meshgrid(*map(np.arange, low, high, [0.2, 0.2])), -1).reshape(-1, 2)
+            spots = np.stack(np.meshgrid(*map(np.arange, low + 0.1, high, [0.2, 0.2])), -1).reshape(-1, 2)
             spots = spots[box_distance(spots, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1) == 0]
+            if not len(spots):
+                continue  # a room too small for a name
             reach = ImageFont.load_default(13).getlength(name) / 2 / self.px_per_m
             along = (spots[:, None] + np.linspace(-reach, reach, 7)[:, None] * [1, 0]).reshape(-1, 2)
             free = box_distance(along, w.centre, w.half, w.angle).min(1).reshape(-1, 7).min(1)
@@ -203,7 +206,7 @@ class Map(Canvas):
 
 
 def home(world, width_px=640, grid=None, starts=()):
-    """A home from above with its legend, the cells of its places, and poses as little arrows."""
+    """A home from above, the cells of its places, poses as little arrows, and the colours of what stands in it."""
     plan = Map(world, width_px, grid=grid)
     plan.starts(starts)
     return sheet([plan.picture(), legend(THINGS)], columns=1, margin=4)
@@ -275,22 +278,25 @@ def graph(graphs, picture, full=True):
     boxes = graphs.boxes * (picture.width / VIEW_PX) + [1, 1, -1, -1]
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
     words = words_in_words(graphs.words)
-    for box, (label, _, _) in zip(boxes, words, strict=True):
+    colours = [_colour(label) for label, _, _ in words]
+    names = [f"{CLASSES[c]}, {SIZES[s]}, {LOCATIONS[l]}" if full else CLASSES[c] for c, s, l in words]
+    taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name shall cover them, nor another name
+    for middle, name in zip(middles, names, strict=True):
+        width = ImageFont.load_default(11).getlength(name) + 8
+        taken = np.vstack([taken, _spot(middle, width, 16, taken, picture.size)])
+    plates = taken[len(middles):]
+
+    for box, colour in zip(boxes, colours, strict=True):
         canvas.box(*box, None, (*INK, 80), 4)
-        canvas.box(*(box + [1, 1, -1, -1]), None, _colour(label), 2)
+        canvas.box(*(box + [1, 1, -1, -1]), None, colour, 2)
     for i, j in graphs.edges:
         canvas.line(middles[[i, j]], (*INK, 150), 1.5)
-    for middle, (label, _, _) in zip(middles, words, strict=True):
-        canvas.disc(middle, 5, _colour(label), INK, 1.5)
-    taken = [(*(m - 6), *(m + 6)) for m in middles]
-    for middle, (label, size, location) in zip(middles, words, strict=True):
-        name = f"{CLASSES[label]}, {SIZES[size]}, {LOCATIONS[location]}" if full else CLASSES[label]
-        width = ImageFont.load_default(11).getlength(name) + 8
-        taken.append(_spot(middle, width, 16, taken, picture.size))
-        x0, y0, x1, y1 = taken[-1]
-        canvas.line([middle, (np.clip(middle[0], x0, x1), np.clip(middle[1], y0, y1))], INK)
-        canvas.box(*taken[-1], (*PAPER, 225), _colour(label))
-        canvas.text((x0 + 4, (y0 + y1) / 2), name, 11)
+    for middle, plate, colour in zip(middles, plates, colours, strict=True):
+        canvas.line([middle, middle.clip(plate[:2], plate[2:])])
+        canvas.disc(middle, 5, colour, INK, 1.5)
+    for plate, name, colour in zip(plates, names, colours, strict=True):
+        canvas.box(*plate, (*PAPER, 225), colour)
+        canvas.text((plate[0] + 4, (plate[1] + plate[3]) / 2), name, 11)
     return canvas.picture()
 
 
@@ -311,7 +317,7 @@ def ranks(grid, values, true_place=None, n=8, width_px=230):
         ix, iy = divmod(grid.location_of(place), grid.ny)
         end = 72 + max(1.5, (width_px - 72 - 36) * values[place] / max(values[order[0]], 1e-9))
         canvas.text((22, y), str(rank) if values[place] > 0 else "", 11, QUIET, "rm")
-        canvas.text((30, y), f"{chr(65 + ix)}{iy + 1}", 12, ink)
+        canvas.text((30, y), _column_name(ix) + _row_name(iy), 12, ink)
         canvas.arrow((60, y), (place % grid.n_bearings + 0.5) * 2 * np.pi / grid.n_bearings, 14, ink)
         canvas.polygon([(72, y - 5), (end, y - 5), (end, y + 5), (72, y + 5)], ink if ink == RIGHT else BAR)
         canvas.text((end + 5, y), f"{values[place]:.2f}", 11, ink)
@@ -350,6 +356,14 @@ def _ahead(theta):
     return np.stack([np.cos(theta), np.sin(theta)], -1)
 
 
+def _column_name(ix):
+    return (chr(64 + ix // 26) if ix >= 26 else "") + chr(65 + ix % 26)
+
+
+def _row_name(iy):
+    return str(iy + 1)
+
+
 def _enlarged(points):
     return [(SMOOTH * float(x), SMOOTH * float(y)) for x, y in points]
 
@@ -361,7 +375,6 @@ def _spot(node, width, height, taken, size):
         overlap = (high - low).clip(0).prod(1).sum()
         return 1e3 * overlap + abs(box[0] + width / 2 - node[0]) / 4 + abs(box[1] + height / 2 - node[1])
 
-    taken = np.array(taken)
     lefts = np.clip(node[0] + np.array([8, -width / 2, -width - 8]), 1, size[0] - width - 1)
     tops = np.clip(node[1] - height / 2 + np.arange(-144, 145, 6), 1, size[1] - height - 1)
     return min(((x, y, x + width, y + height) for x in lefts for y in tops), key=cost)

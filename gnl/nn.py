@@ -91,7 +91,8 @@ def pool_backward(dout, cache):
 def upsample_forward(x, factor):
     """Each pixel becomes factor x factor equal pixels: (B, H, W, C) -> (B, factor H, factor W, C)."""
     B, H, W, C = x.shape
-    wide = np.broadcast_to(x[:, :, None, :, None], (B, H, factor, W, factor, C))
+    wide = np.empty((B, H, factor, W, factor, C), x.dtype)
+    wide[:] = x[:, :, None, :, None]
     return wide.reshape(B, factor * H, factor * W, C), (factor,)
 
 
@@ -108,21 +109,23 @@ def softmax(scores):
     return e / e.sum(-1, keepdims=True)
 
 
-def softmax_cross_entropy(scores, labels):
+def softmax_cross_entropy(scores, labels, axis=-1):
     """Mean of -log p[label] and its gradient.
 
         p = softmax(scores),   dscores = (p - onehot(labels)) / n
 
-    scores (..., K), labels (...) int -> loss, dscores (..., K)
+    scores (..., K), or with the classes along another `axis`; labels (...) int -> loss, dscores like scores
     """
-    K, n = scores.shape[-1], labels.size
-    z = np.ascontiguousarray(scores.reshape(n, K).T)  # classes first: sums over K then run along memory
+    moved = np.moveaxis(scores, axis, 0)  # classes first: sums over them then run along memory
+    z = np.ascontiguousarray(moved.reshape(len(moved), -1))
+    n = z.shape[1]
     e = np.exp(z - z.max(0))
     p = e / e.sum(0)
     right = labels.ravel(), np.arange(n)
     loss = -np.log(p[right] + np.finfo(p.dtype).tiny).mean()
     p[right] -= 1
-    return loss, (p.T / p.dtype.type(n)).reshape(scores.shape)
+    p /= n
+    return loss, np.moveaxis(p.reshape(moved.shape), 0, axis)
 
 
 class Adam:

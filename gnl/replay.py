@@ -39,6 +39,7 @@ class Look:
     graph: object  # SceneGraphs of this view
     q: np.ndarray  # (A,) values of the next actions, or None
     action: int = None  # that led here, or None
+    bumped: bool = False  # whether something stopped it
 
 
 @dataclass
@@ -60,13 +61,14 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, length=LENGT
     """Run one episode and keep what each look shows: list of Look; arguments as for episode.run."""
     witness, looks = Witness(senses.world, senses.net, senses.gcn, senses.noise), []
 
-    def watch(step, poses, states, pooled, filter, **_):  # noqa: A002
+    def watch(step, poses, states, pooled, filter, **_):
         seen = witness.latest
         particles = tuple(a[0].copy() for a in (filter.x, filter.y, filter.theta, filter.weight))
         looks.append(Look(
             poses[0].copy(), int(grid.place_of(poses)[0]), int(pooled[0].argmax()), pooled[0], particles, states[0],
             seen["large"][0], seen.get("labels", seen["view"][1])[0], seen["graph"],
-            nnql.q_values(states)[0] if nnql else None, int(seen["plan"][0]) if step else None))
+            nnql.q_values(states)[0] if nnql else None,
+            *((int(seen["plan"][0]), bool(seen["robot"][2][0])) if step else ())))
 
     run(witness, robot, grid, plan, start_pose[None], seed, length, watch=watch)
     return looks
@@ -78,7 +80,7 @@ def frames(looks, world, grid):
     panels = [_panels(look, grid) for look in looks]
     shown = []
     for t, (look, panel) in enumerate(zip(looks, panels, strict=True)):
-        after = f"after {DOING[look.action]}" if t else "at the start"
+        after = "at the start" if not t else "after a bump" if look.bumped else f"after {DOING[look.action]}"
         shown.append((_frame(home, panel, looks, t, look.pose, after), LOOK_S if look is not looks[-1] else LAST_S))
         if look is looks[-1]:
             break
@@ -97,10 +99,13 @@ def gif(shown):
     wall = Image.new("RGB", (stills[0].width, stills[0].height * len(stills)))
     for i, picture in enumerate(stills):
         wall.paste(picture, (0, i * picture.height))
-    exact = [*draw.PALETTE.tolist(), draw.PAPER, draw.INK, draw.ROBOT, draw.RIGHT, draw.WRONG, draw.WALLS, *draw.TINTS]
-    n = 256 - len(exact)  # the colours with a meaning as they are, all others as near as the rest allows
+    # The colours that mean something stay as they are: no other one may be near them.
+    exact = np.array([*draw.PALETTE, *draw.TINTS, draw.PAPER, draw.INK, draw.WALLS, draw.ROBOT, draw.RIGHT,
+                      draw.WRONG])
+    others = np.array(wall.quantize(256 - len(exact)).getpalette()).reshape(-1, 3)
+    others = others[abs(others[:, None] - exact).max(2).min(1) > 8]
     palette = Image.new("P", (1, 1))
-    palette.putpalette([*wall.quantize(n, dither=Image.Dither.NONE).getpalette()[:3 * n], *sum(map(list, exact), [])])
+    palette.putpalette(np.vstack([exact, others]).astype(np.uint8).tobytes())
     flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture, _ in shown]
     data = io.BytesIO()
     flat[0].save(data, "GIF", save_all=True, append_images=flat[1:], loop=0, optimize=False,
@@ -116,7 +121,7 @@ def save_gif(looks, world, grid, path):
 def _panels(look, grid):
     """What a look is and says, in pictures: view, graph on labels, ranks, belief."""
     return (draw.view(look.view, VIEW_PX), draw.graph(look.graph, draw.labels(look.labels, VIEW_PX), full=False),
-            draw.ranks(grid, look.states, look.place, 6, 176), draw.ranks(grid, look.pooled, look.place, 6, 176))
+            draw.ranks(grid, look.states, look.place, 6, 176), draw.ranks(grid, look.pooled, look.place, 6, 168))
 
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
@@ -134,9 +139,10 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
 
     page.text((28, 28), f"look {t + 1} of {len(looks)}", 20)
     page.text((146, 29), doing, 15, draw.ROBOT)
-    titles = "the robot sees", "it recognises", "this view says", "the filter believes", "next action"
-    for title, picture, x, y in zip(titles, [*panel, _actions(look.q, action)], (464, 712, 464, 648, 832),
-                                    (72, 72, 348, 348, 348), strict=True):
+    parts = [("the robot sees", 464, 72), ("it recognises", 712, 72), ("this view says", 464, 348),
+             ("the filter believes", 648, 348), ("next action", 832, 348)]
+    pictures = panel if look is looks[-1] else [*panel, _actions(look.q, action)]
+    for (title, x, y), picture in zip(parts, pictures, strict=False):
         page.text((x, y - 13), title, 13)
         page.paste(picture, x, y)
     page.text((464, 488), f"answer {'right' if right else 'wrong'}", 16, verdict)

@@ -3,11 +3,11 @@
 The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the view at stride 8 and predicts each of
 its 64 x 64 pixels.
 
-    stem    64 x 64 x 4  -> 32 x 32 x 16     conv / 2, ReLU
-    down    32 x 32 x 16 -> 16 x 16 x 32     conv / 2, ReLU
+    stem    64 x 64 pixels as 32 x 32 quads of 2 x 2 -> 32 x 32 x 24    linear, ReLU
+    down    32 x 32 x 24 -> 16 x 16 x 32    conv / 2, ReLU
     block   16 x 16 x 32, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
     pyramid every pixel hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
-    head    upsampled to 32 x 32 and joined with the stem; 2 x 2 sub-pixels of 10 scores each -> 64 x 64 x 10
+    head    upsampled to 32 x 32 and joined with the stem -> 10 scores for each of the 4 pixels of a quad
 """
 
 import numpy as np
@@ -17,7 +17,6 @@ from .files import load_arrays, save_arrays
 from .nn import (
     Adam,
     conv_backward,
-    conv_backward_weights,
     conv_forward,
     linear_backward,
     linear_forward,
@@ -31,7 +30,8 @@ from .nn import (
 )
 
 SIZE_PX = 64
-STEM, WIDTH, BLOCKS, GRIDS = 16, 32, 1, (1, 2, 4)
+QUAD = 4  # pixels in a quad, 2 x 2
+STEM, WIDTH, BLOCKS, GRIDS = 24, 32, 1, (1, 2, 4)
 
 
 def new_params(rng, dtype=np.float32):
@@ -42,7 +42,7 @@ def new_params(rng, dtype=np.float32):
         params[f"{name}.w"] = (np.sqrt(gain / np.prod(shape[:-1])) * rng.standard_normal(shape)).astype(dtype)
         params[f"{name}.b"] = np.zeros(shape[-1], dtype)
 
-    layer("stem", 3, 3, 4, STEM)
+    layer("stem", QUAD * 4, STEM)
     layer("down", 3, 3, STEM, WIDTH)
     for i in range(BLOCKS):
         layer(f"block{i}.first", 3, 3, WIDTH, WIDTH)
@@ -52,12 +52,15 @@ def new_params(rng, dtype=np.float32):
         layer(f"pyramid{grid}", WIDTH, WIDTH, gain=0.5)
     layer("fine", STEM, WIDTH)
     layer("coarse", WIDTH, WIDTH, gain=1.0)
-    layer("head", WIDTH, 4 * N_CLASSES, gain=1.0)
+    layer("head", WIDTH, N_CLASSES * QUAD, gain=1.0)
     return params
 
 
 def forward(params, rgb):
-    """Scores of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64, 10); cache: those of the layers by name."""
+    """Scores of each pixel, classes first and pixels by quads (see `to_quads`); cache: those of the layers by name.
+
+    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 32, 32)
+    """
     cache = {}
 
     def conv(name, x, stride=1):
@@ -72,7 +75,7 @@ def forward(params, rgb):
         out, cache[f"{name}.relu"] = relu_forward(x)
         return out
 
-    fine = relu("stem", conv("stem", standardise(rgb, params["stem.w"].dtype), 2))
+    fine = relu("stem", linear("stem", standardise(rgb, params["stem.w"].dtype)))
     x = relu("down", conv("down", fine, 2))
     for i in range(BLOCKS):
         inner = relu(f"block{i}.first", conv(f"block{i}.first", x))
@@ -80,34 +83,42 @@ def forward(params, rgb):
     y = linear("pyramid", x)
     for grid in GRIDS:
         pooled, cache[f"pool{grid}"] = pool_forward(x, grid)
-        y = y + upsample_forward(linear(f"pyramid{grid}", pooled), x.shape[1] // grid)[0]
+        y += upsample_forward(linear(f"pyramid{grid}", pooled), x.shape[1] // grid)[0]
     y = relu("pyramid", y)
-    joined = relu("head", linear("fine", fine) + upsample_forward(linear("coarse", y), 2)[0])
-    return _unfold(linear("head", joined)), cache
+    joined = linear("fine", fine)
+    joined += upsample_forward(linear("coarse", y), 2)[0]
+    joined = relu("head", joined)
+    # Classes first: the loss and the best class then run along memory.
+    scores = params["head.w"].T @ joined.reshape(-1, WIDTH).T + params["head.b"][:, None]
+    cache["head"] = joined, params["head.w"]
+    return scores.reshape(N_CLASSES, QUAD, *joined.shape[:3]), cache
 
 
 def standardise(rgb, dtype=np.float32):
-    """Colours less the view's mean over its spread, and how high each row is: (B, H, H, 3) uint8 -> (B, H, H, 4)."""
+    """Colours less the view's mean over its spread, and how high each row is: (B, H, H, 3) uint8 -> quads of these.
+
+    returns : (B, H / 2, H / 2, 16), the 4 channels of the 2 x 2 pixels of each quad
+    """
     B, H, W, _ = rgb.shape
-    x = np.empty((B, H, W, 4), dtype)
-    x[..., :3] = rgb
-    pixels = x[..., :3].reshape(B, -1)
-    mean, spread = pixels.mean(1), pixels.std(1)
-    x[..., :3] -= mean[:, None, None, None]
-    x[..., :3] /= spread[:, None, None, None] + 1
-    x[..., 3] = np.linspace(1, -1, H)[:, None]  # the camera never tilts: floor is low, ceiling high
-    return x
+    flat = rgb.reshape(B, -1).astype(dtype)
+    flat -= flat.mean(1, keepdims=True)
+    flat /= np.sqrt((flat ** 2).mean(1, keepdims=True)) + 1  # a view of one colour stays at zero
+    x = np.empty((B, H // 2, W // 2, 2, 2, 4), dtype)
+    x[..., :3] = flat.reshape(B, H // 2, 2, W // 2, 2, 3).transpose(0, 1, 3, 2, 4, 5)
+    x[..., 3] = np.linspace(1, -1, H, dtype=dtype).reshape(-1, 1, 2, 1)  # the camera never tilts: floor is low
+    return x.reshape(B, H // 2, W // 2, 16)
 
 
 def backward(params, dscores, cache):
-    """Gradients of all parameters from dscores (B, 64, 64, 10), as a dict with the names of `params`."""
+    """Gradients of all parameters from dscores (10, 4, B, 32, 32), as a dict with the names of `params`."""
     grads = {}
 
     def back(step, name, dout):
         dx, grads[f"{name}.w"], grads[f"{name}.b"] = step(dout, cache[name])
         return dx
 
-    djoined = relu_backward(back(linear_backward, "head", _fold(dscores)), cache["head.relu"])
+    dhead = np.moveaxis(dscores.reshape(-1, *dscores.shape[2:]), 0, -1)
+    djoined = relu_backward(back(linear_backward, "head", dhead), cache["head.relu"])
     dfine = back(linear_backward, "fine", djoined)
     dy = back(linear_backward, "coarse", upsample_backward(djoined, (2,)))
     dy = relu_backward(dy, cache["pyramid.relu"])
@@ -120,8 +131,7 @@ def backward(params, dscores, cache):
         dinner = back(conv_backward, f"block{i}.second", dsum)
         dx = dsum + back(conv_backward, f"block{i}.first", relu_backward(dinner, cache[f"block{i}.first.relu"]))
     dfine = dfine + back(conv_backward, "down", relu_backward(dx, cache["down.relu"]))
-    dstem = relu_backward(dfine, cache["stem.relu"])
-    grads["stem.w"], grads["stem.b"] = conv_backward_weights(dstem, cache["stem"])
+    back(linear_backward, "stem", relu_backward(dfine, cache["stem.relu"]))
     return grads
 
 
@@ -129,11 +139,15 @@ def predict(params, rgb, chunk=8):
     """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. Few views at once stay in the cache."""
     labels = np.empty(rgb.shape[:3], np.uint8)
     for i in range(0, len(rgb), chunk):
-        labels[i:i + chunk] = forward(params, rgb[i:i + chunk])[0].argmax(-1)
+        scores, _ = forward(params, rgb[i:i + chunk])
+        best, quads = scores.max(0), np.zeros(scores.shape[1:], np.uint8)
+        for k in range(1, N_CLASSES):  # arg max over classes, many times faster than along an axis of ten
+            np.maximum(quads, (scores[k] == best) * np.uint8(k), out=quads)
+        labels[i:i + chunk] = from_quads(quads)
     return labels
 
 
-def train(params, rgb, labels, rng, epochs, batch=16, rate=3e-3, progress=None):
+def train(params, rgb, labels, rng, epochs, batch=8, rate=4e-3, progress=None):
     """Fit `params` in place to views and their labels; each view is seen mirrored half the time.
 
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
@@ -147,7 +161,7 @@ def train(params, rgb, labels, rng, epochs, batch=16, rate=3e-3, progress=None):
         if rng.random() < 0.5:
             x, y = x[:, :, ::-1], y[:, :, ::-1]
         scores, cache = forward(params, x)
-        loss, dscores = softmax_cross_entropy(scores, y)
+        loss, dscores = softmax_cross_entropy(scores, to_quads(y), axis=0)
         share = (step + 1) / n_steps
         adam.step(backward(params, dscores, cache), rate * min(1, 20 * share) * (1 + np.cos(np.pi * share)) / 2)
         if progress:
@@ -163,16 +177,15 @@ def accuracy(predicted, true):
     return hit.sum() / both.sum(), iou.mean()
 
 
-def _unfold(x):
-    """(B, H, W, 4 K) -> (B, 2 H, 2 W, K): the four quarters of the channels are a pixel's 2 x 2 sub-pixels."""
-    B, H, W, F = x.shape
-    return x.reshape(B, H, W, 2, 2, F // 4).transpose(0, 1, 3, 2, 4, 5).reshape(B, 2 * H, 2 * W, F // 4)
+def to_quads(images):
+    """Pixels by quads: (B, H, W, ...) -> (4, B, H / 2, W / 2, ...), upper left, upper right, lower left, lower right."""
+    return np.stack([images[:, i::2, j::2] for i in (0, 1) for j in (0, 1)])
 
 
-def _fold(x):
-    """The way back: (B, 2 H, 2 W, K) -> (B, H, W, 4 K)."""
-    B, H, W, K = x.shape
-    return x.reshape(B, H // 2, 2, W // 2, 2, K).transpose(0, 1, 3, 2, 4, 5).reshape(B, H // 2, W // 2, 4 * K)
+def from_quads(quads):
+    """The way back: (4, B, h, w) -> (B, 2 h, 2 w)."""
+    _, B, h, w = quads.shape
+    return quads.reshape(2, 2, B, h, w).transpose(2, 3, 0, 4, 1).reshape(B, 2 * h, 2 * w)
 
 
 def save(params, path, made_by):

@@ -71,3 +71,13 @@ def labels(world, pose, size):
         first = (near < far) & (near < nearest)
         label[first], nearest[first] = world.label[box], near[first]
     return label
+
+
+def within_polygon(points, polygon):
+    """Which points lie within a polygon: those from which a ray to the right crosses its rim an odd number of times."""
+    inside = np.zeros(len(points), bool)
+    for i, (x, y) in enumerate(points):
+        for (x0, y0), (x1, y1) in zip(polygon, np.roll(polygon, -1, 0), strict=True):
+            if (y0 > y) != (y1 > y) and x < x0 + (y - y0) * (x1 - x0) / (y1 - y0):
+                inside[i] = not inside[i]
+    return inside

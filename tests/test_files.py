@@ -133,7 +133,9 @@ def damaged_shape(path):
 
 def unknown_packing(path):
     save_arrays(path, {}, a=np.arange(1000))
-    path.write_bytes(path.read_bytes().replace(b"PK\1\2\x2d\3\x2d\0\0\0\0\0", b"PK\1\2\x2d\3\x2d\0\0\0\x63\0"))
+    data = bytearray(path.read_bytes())
+    data[data.rfind(b"PK\1\2") + 10] = 99  # how the last array is packed, in the archive's table of contents
+    path.write_bytes(data)
 
 
 FAULTS = [missing, folder, empty, text, single_array, pickles, no_header, header_of_numbers, header_of_a_list,

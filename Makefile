@@ -1,0 +1,60 @@
+# Every command of the project. `make demo` and `make test` need python >= 3.10 and make, nothing else.
+
+# One BLAS thread a process: two threads on two busy cores make a net 25 times slower.
+export OPENBLAS_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+# Keep freed memory in the process: handing every large array back to the system costs half the speed.
+export MALLOC_MMAP_THRESHOLD_ := 268435456
+export MALLOC_TRIM_THRESHOLD_ := 536870912
+export MALLOC_TOP_PAD_ := 67108864
+
+PYTHON ?= python3
+RUN := .venv/bin/python
+
+SEED ?= 0
+NOISE ?= 1
+HOUSE ?= 800
+ALIASING ?= 0.3
+PLAN ?=
+ARGS ?=
+VIEWS := out/data/views-$(NOISE).npz
+HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
+
+.PHONY: help demo test lint bench clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo    learn every stage in a home and let a robot find out where it is (out/demo)"
+	@echo "             PLAN=path.json a home of your own    SEED=0 NOISE=1 HOUSE=800 ALIASING=0.3"
+	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
+	@echo "make test    run the tests"
+	@echo "make lint    check the style of the code"
+	@echo "make bench   our kernels beside the plain or library way, as ratios"
+	@echo "make clean   remove .venv and out"
+
+demo: .venv/ready
+	@test -n "$(PLAN)" || $(RUN) -m data_gen home "$(HOME_PLAN)" --seed "$(HOUSE)" --aliasing "$(ALIASING)"
+	@$(RUN) -m data_gen views "$(VIEWS)" --noise "$(NOISE)"
+	@$(RUN) -m gnl demo --plan "$(HOME_PLAN)" --views "$(VIEWS)" --seed "$(SEED)" --noise "$(NOISE)" $(ARGS)
+
+test: .venv/ready
+	@$(RUN) -m pytest
+
+lint: .venv/ready
+	@$(RUN) -m ruff check .
+
+bench: .venv/ready
+	@$(RUN) -m tests.bench
+
+clean:
+	rm -rf .venv out build *.egg-info
+
+# Made anew only when setup.cfg changed.
+.venv/ready: setup.cfg
+	@$(PYTHON) -c 'import sys; v = sys.version_info; v >= (3, 10) or \
+	    sys.exit(f"gnl: expected python >= 3.10, found {v[0]}.{v[1]}; name another with make PYTHON=...")'
+	@echo "setting up .venv ..."
+	@$(PYTHON) -m venv .venv
+	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@

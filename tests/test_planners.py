@@ -1,0 +1,88 @@
+"""Each planner chooses as its name says; among equals chance decides, and evenly."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from gnl import planners
+from gnl.robot import FORWARD, LEFT, N_ACTIONS, RIGHT
+
+N = 6000
+STATES = np.zeros((N, 4))
+
+
+class Values:
+    """An NNQL of fixed Q-values."""
+
+    def __init__(self, *q):
+        self.q = np.array(q, float)
+
+    def q_values(self, states):
+        return np.tile(self.q, (len(states), 1))
+
+
+def shares(actions):
+    assert actions.shape == (N,)
+    return np.bincount(actions, minlength=N_ACTIONS) / N
+
+
+def rng():
+    return np.random.default_rng(0)
+
+
+def close(*wanted):
+    """Within 4 standard errors of any share of N draws."""
+    return pytest.approx(wanted, abs=4 * 0.5 / np.sqrt(N))
+
+
+def test_who_stays_ends_the_episode():
+    assert planners.stay(0, STATES, rng()) is None
+
+
+def test_chance_takes_each_action_equally_often():
+    assert shares(planners.chance(0, STATES, rng())) == close(1 / 3, 1 / 3, 1 / 3)
+
+
+def test_a_scan_is_its_sequence_whatever_there_is_to_see():
+    plan = planners.scan([LEFT, FORWARD, RIGHT])
+    for step, action in enumerate((LEFT, FORWARD, RIGHT)):
+        assert plan(step, STATES[:5], rng()).tolist() == [action] * 5
+
+
+@pytest.mark.parametrize(("q", "wanted"), [
+    ((1, 2, 3), (0, 0, 1)), ((-1, -3, -2), (1, 0, 0)), ((0, 5, 5), (0, 1 / 2, 1 / 2)),
+    ((7, 7, 1e-9), (1 / 2, 1 / 2, 0)), ((0, 0, 0), (1 / 3, 1 / 3, 1 / 3)), ((-2, -2, -2), (1 / 3, 1 / 3, 1 / 3))])
+def test_greedy_takes_the_greatest_value_and_draws_among_equals(q, wanted):
+    assert shares(planners.greedy(Values(*q))(0, STATES, rng())) == close(*wanted)
+
+
+def test_best_actions_are_those_of_each_row():
+    q = np.array([[1.0, 2, 3], [3, 2, 1], [1, 3, 2]])
+    assert planners.best_actions(q, rng()).tolist() == [2, 0, 1]
+
+
+@pytest.mark.parametrize("epsilon", [0, 0.3, 1])
+def test_exploring_is_by_chance_in_a_share_epsilon(epsilon):
+    plan = planners.explore(Values(0, 1, 0), np.full(N, epsilon))
+    assert shares(plan(0, STATES, rng())) == close(epsilon / 3, 1 - epsilon * 2 / 3, epsilon / 3)
+
+
+def test_each_episode_explores_by_its_own_epsilon():
+    actions = planners.explore(Values(0, 1, 0), np.arange(N) % 2)(0, STATES, rng())
+    assert (actions[::2] == 1).all()
+    assert np.mean(actions[1::2] == 1) == pytest.approx(1 / 3, abs=0.04)
+
+
+@pytest.mark.parametrize("length", [1, 2, 4])
+def test_all_sequences_are_all_and_each_once(length):
+    sequences = planners.all_sequences(length)
+    assert sequences.shape == (N_ACTIONS ** length, length)
+    assert {tuple(row) for row in sequences.tolist()} == set(itertools.product(range(N_ACTIONS), repeat=length))
+    # The order of a tree in which the last action varies fastest: best_sequence counts on it.
+    assert sequences.tolist() == sorted(sequences.tolist())
+
+
+def test_one_seed_gives_one_choice():
+    for plan in (planners.chance, planners.greedy(Values(1, 1, 1)), planners.explore(Values(0, 1, 0), 0.5)):
+        np.testing.assert_array_equal(plan(0, STATES, rng()), plan(0, STATES, rng()))

@@ -1,0 +1,89 @@
+"""The replay: it shows the episode that was, in as many frames as it has looks, decisions and ways between."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gnl import draw, episode, planners, replay, segnet
+from gnl.gcn import GCN
+from gnl.nnql import NNQL
+from gnl.places import PlaceGrid
+from gnl.robot import N_ACTIONS, Robot
+from gnl.world import World
+
+PLAN = {"name": "six by four", "walls": [[0, 0, 6, 0], [6, 0, 6, 4], [6, 4, 0, 4], [0, 4, 0, 0]],
+        "objects": [{"class": "bed", "polygon": [[0.5, 2.5], [2, 2.5], [2, 3.5], [0.5, 3.5]], "height": 0.5}]}
+START, SEED = np.array([3.0, 1.0, 0.3]), 7
+LEFT_THEN_FORWARD = planners.scan([0, 2])
+
+
+@pytest.fixture(scope="module")
+def parts():
+    world = World(PLAN)
+    grid = PlaceGrid(world)
+    rng = np.random.default_rng(0)
+    senses = episode.Senses(world, segnet.new_params(rng), GCN(grid.n_places, rng, hidden=8))
+    return world, grid, Robot(world), senses
+
+
+@pytest.fixture(scope="module")
+def looks(parts):
+    _, grid, robot, senses = parts
+    return replay.collect(senses, robot, grid, LEFT_THEN_FORWARD, START, SEED,
+                          NNQL(grid.n_places, N_ACTIONS), length=2)
+
+
+def test_looking_over_its_shoulder_does_not_change_an_episode(parts, looks):
+    _, grid, robot, senses = parts
+    states = []
+    record = episode.run(senses, robot, grid, LEFT_THEN_FORWARD, START[None], SEED, length=2,
+                         watch=lambda step, **happened: states.append(happened["states"][0]))
+    assert np.array_equal([look.states for look in looks], states)
+    assert np.array_equal([look.pose for look in looks], record.poses[0])
+    assert [look.answer for look in looks] == record.answers[0].tolist()
+    assert [look.place for look in looks] == record.places[0].tolist()
+    assert [look.pooled[look.place] for look in looks] == record.belief[0].tolist()
+    assert [look.action for look in looks] == [None, *record.actions[0]]
+
+
+def test_each_look_keeps_its_own_particles(looks):
+    first, second, _ = (look.particles for look in looks)
+    assert not np.array_equal(first[2], second[2])
+
+
+def test_the_large_view_is_the_photograph_that_the_net_saw(parts):
+    world, grid, robot, senses = parts
+    witness = replay.Witness(world, senses.net, senses.gcn)
+    witness.look(START[None], np.random.default_rng(3))
+    small, large = witness.latest["view"][0][0], witness.latest["large"][0]
+    averaged = np.array(Image.fromarray(large).resize((64, 64), Image.Resampling.BOX), float)
+    assert abs(averaged.mean((0, 1)) - small.mean((0, 1))).max() < 2  # light and colour cast differ by much more
+
+
+def test_a_frame_for_each_look_each_decision_and_some_between(parts, looks, tmp_path):
+    world, grid, *_ = parts
+    replay.save_gif(looks, world, grid, tmp_path / "episode.gif")
+    assert [path.name for path in tmp_path.iterdir()] == ["episode.gif"]
+    assert (tmp_path / "episode.gif").stat().st_size < 1.5e6
+    with Image.open(tmp_path / "episode.gif") as film:
+        assert film.size == (960, 540)
+        assert film.n_frames == 3 + 2 + 2 * replay.N_MOTION
+        assert film.info["loop"] == 0  # for ever
+        assert film.info["duration"] == 1600
+        page = np.array(film.convert("RGB"))
+    for colour in (draw.PAPER, draw.PALETTE[3], draw.ROBOT):
+        assert (page == colour).all(-1).any(), colour
+
+
+def test_right_answers_are_green_and_wrong_ones_red(parts, looks):
+    world, grid, *_ = parts
+    pictures = [np.array(picture) for picture, seconds in replay.frames(looks[:1], world, grid)]
+    dot = pictures[0][28, 944]
+    assert tuple(dot) == (draw.RIGHT if looks[0].answer == looks[0].place else draw.WRONG)
+
+
+def test_an_episode_of_one_look_is_one_frame(parts):
+    world, grid, robot, senses = parts
+    looks = replay.collect(senses, robot, grid, planners.stay, START, SEED)
+    assert len(looks) == len(replay.frames(looks, world, grid)) == 1
+    assert replay.gif(replay.frames(looks, world, grid)).startswith(b"GIF89a")
