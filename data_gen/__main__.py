@@ -37,7 +37,7 @@ def main(argv=None):
     command.set_defaults(run=home)
     command = commands.add_parser("views", help="render views to train the segmentation net on")
     command.add_argument("out", help="file of arrays to write (.npz)")
-    command.add_argument("--homes", type=int, default=60)
+    command.add_argument("--homes", type=int, default=40)
     command.add_argument("--views", type=int, default=2400)
     command.add_argument("--seed", type=int, default=0)
     command.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")

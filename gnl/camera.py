@@ -18,7 +18,7 @@ from .strip import FIELD_OF_VIEW_RAD, FRONT, NEAREST_M, TOP, UNDERSIDE, cast
 HEIGHT_M = 1.25  # CHOICE: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
 MOST_SURFACES = 62  # of one column, one bit each; what lies behind the 62 nearest is not drawn
-CHUNK_RAYS = 4096  # rays cast at once: as many as stay in the cache
+CHUNK_RAYS = 2048  # rays cast at once: as many as stay in the cache
 
 
 @dataclass(frozen=True)

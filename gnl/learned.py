@@ -13,6 +13,8 @@ import numpy as np
 from . import episode, gcn, nnql, segnet
 from .files import load_arrays, save_arrays
 from .ranks import ranks
+from .robot import Robot
+from .scene_graph import join
 
 
 def digest(settings):
@@ -40,16 +42,22 @@ def segmentation_net(folder, views, views_made_by, epochs, seed, stage):
     return kept(folder, "net", settings, segnet.load, learn)
 
 
-def place_classifier(folder, senses, grid, n_views, epochs, seed, settings, stage):
-    """GCN trained on `n_views` views from random free poses; `settings` names what `senses` is made of."""
-    settings = {**settings, "views": n_views, "epochs": epochs, "seed": seed}
+def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stage, **how):
+    """GCN trained on `n_views` views from random free poses, `how` as for gcn.train.
+
+    `settings` names what `senses` is made of; `helper` is a pool whose process looks at half of the views.
+    """
+    settings = {**settings, "views": n_views, "seed": seed, **how}
 
     def learn(path):
         rng = np.random.default_rng(seed)
         poses = senses.world.free_poses(n_views, rng)
-        graphs = senses.look_around(poses, rng, lambda share: stage(0.5 * share, "looking around"))
+        mine, others = poses[:n_views // 2], poses[n_views // 2:]
+        theirs = helper.apply_async(senses.look_around, (others, np.random.default_rng([seed, 1])))
+        graphs = senses.look_around(mine, rng, lambda share: stage(0.5 * share, "looking around"))
+        graphs = join([graphs, theirs.get()])
         network = gcn.GCN(grid.n_places, rng)
-        gcn.train(network, graphs, grid.place_of(poses), rng, epochs,
+        gcn.train(network, graphs, grid.place_of(poses), rng, **how,
                   progress=lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}"))
         network.save(path, settings)
         return network
@@ -70,13 +78,13 @@ def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):
     return kept(folder, "nnql", settings, nnql.NNQL.load, learn)
 
 
-def fixed_scan(folder, senses, robot, grid, n_starts, seed, settings, stage):
+def fixed_scan(folder, senses, grid, n_starts, seed, settings):
     """Best fixed action sequence over `n_starts` random starts."""
     settings = {**settings, "starts": n_starts, "seed": seed}
 
     def learn(path):
         starts = senses.world.free_poses(n_starts, np.random.default_rng(seed))
-        sequence = episode.best_sequence(senses, robot, grid, starts, seed, progress=stage)
+        sequence = episode.best_sequence(senses, Robot(senses.world), grid, starts, seed)
         save_arrays(path, settings, sequence=sequence)
         return sequence
 

@@ -12,7 +12,7 @@ from .classes import CEILING, FLOOR
 from .strip import FIELD_OF_VIEW_RAD, FRONT, TOP, slopes
 
 SUN_RAD = 0.8  # bearing from which the light comes, so that two sides of a box differ
-EXPOSURE_STD, BALANCE_STD, GRADIENT_STD, SENSOR = 0.12, 0.05, 0.12, 0.12
+EXPOSURE_STD, BALANCE_STD, GRADIENT_STD, SENSOR = 0.10, 0.04, 0.10, 0.10
 # How much the texture of each class shows: wood and cloth much, paint and steel little.
 GRAIN = np.array([.03, .10, .02, .05, .10, .12, .08, .01, .01, .08])
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
-from . import draw
+from . import draw, floor_map
 from .camera import render
 from .episode import LENGTH, Senses, run
 from .files import write_whole
@@ -76,7 +76,7 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, length=LENGT
 
 def frames(looks, world, grid):
     """Pictures of an episode and how long to show each: list of (PIL.Image, seconds)."""
-    home = draw.Map(world, *MAP_PX, grid)
+    home = floor_map.Map(world, *MAP_PX, grid)
     panels = [_panels(look, grid) for look in looks]
     shown = []
     for t, (look, panel) in enumerate(zip(looks, panels, strict=True)):
@@ -100,8 +100,8 @@ def gif(shown):
     for i, picture in enumerate(stills):
         wall.paste(picture, (0, i * picture.height))
     # The colours that mean something stay as they are: no other one may be near them.
-    exact = np.array([*draw.PALETTE, *draw.TINTS, draw.PAPER, draw.INK, draw.WALLS, draw.ROBOT, draw.RIGHT,
-                      draw.WRONG])
+    f = floor_map
+    exact = np.array([*draw.PALETTE, *f.TINTS, f.PAPER, f.INK, f.WALLS, f.ROBOT, f.RIGHT, f.WRONG])
     others = np.array(wall.quantize(256 - len(exact)).getpalette()).reshape(-1, 3)
     others = others[abs(others[:, None] - exact).max(2).min(1) > 8]
     palette = Image.new("P", (1, 1))
@@ -126,8 +126,8 @@ def _panels(look, grid):
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
     """One picture: look t, the robot at `pose`; `action` is the one that the planner has chosen, if it has."""
-    page, look, right = draw.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
-    verdict = draw.RIGHT if right else draw.WRONG
+    page, look, right = floor_map.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
+    verdict = floor_map.RIGHT if right else floor_map.WRONG
     plan = home.copy()
     plan.particles(look.particles)
     plan.place(look.answer, verdict)
@@ -138,7 +138,7 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     page.paste(draw.legend(), 28, 506)
 
     page.text((28, 28), f"look {t + 1} of {len(looks)}", 20)
-    page.text((146, 29), doing, 15, draw.ROBOT)
+    page.text((146, 29), doing, 15, floor_map.ROBOT)
     parts = [("the robot sees", 464, 72), ("it recognises", 712, 72), ("this view says", 464, 348),
              ("the filter believes", 648, 348), ("next action", 832, 348)]
     pictures = panel if look is looks[-1] else [*panel, _actions(look.q, action)]
@@ -148,23 +148,24 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     page.text((464, 488), f"answer {'right' if right else 'wrong'}", 16, verdict)
     page.text((580, 489), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
     for i, other in enumerate(looks):  # how the answers were so far
-        colour = draw.FAINT if i > t else draw.RIGHT if other.answer == other.place else draw.WRONG
+        colour = floor_map.FAINT if i > t else floor_map.RIGHT if other.answer == other.place else floor_map.WRONG
         page.disc((948 - 18 * (len(looks) - 1 - i) - 4, 28), 6, colour)
     return page.picture()
 
 
 def _actions(q, chosen, width_px=120, line_px=38):
     """The values of the actions (A,), if known, as bars from a common zero; the chosen one in orange."""
-    page = draw.Canvas(width_px, line_px * len(ACTIONS))
+    page = floor_map.Canvas(width_px, line_px * len(ACTIONS))
     low, high = (min(0, *q), max(0, *q)) if q is not None else (0, 0)
     scale = (width_px - 3) / max(high - low, 1e-9)
     zero = 1 - low * scale
     for a, name in enumerate(ACTIONS):
-        y, ink = line_px * a + 9, draw.ROBOT if a == chosen else draw.INK
+        y, ink = line_px * a + 9, floor_map.ROBOT if a == chosen else floor_map.INK
         page.text((0, y), name, 12, ink)
         if q is not None:
             page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
             x0, x1 = sorted((zero, zero + q[a] * scale))
-            page.polygon([(x0, y + 9), (x1, y + 9), (x1, y + 19), (x0, y + 19)], draw.BAR if a != chosen else ink)
+            colour = ink if a == chosen else floor_map.BAR
+            page.polygon([(x0, y + 9), (x1, y + 9), (x1, y + 19), (x0, y + 19)], colour)
             page.line([(zero, y + 7), (zero, y + 21)])
     return page.picture()

@@ -1,5 +1,7 @@
 """The terminal: one line for each stage of a run, one clear line for what cannot be done."""
 
+import multiprocessing
+import signal
 import sys
 import time
 
@@ -34,6 +36,12 @@ class Stage:
         start = "\r\x1b[K" if self.stream.isatty() else ""
         self.stream.write(f"{start}{self.name:<8} {text:<76} {self.seconds:5.1f} s\n")
         self.stream.flush()
+
+
+def second_process():
+    """A pool of one process beside this one, for use in a with statement; an interruption ends it too."""
+    # Spawned, not forked: it must not inherit half a computation. Ctrl-C is for the first process to handle.
+    return multiprocessing.get_context("spawn").Pool(1, signal.signal, (signal.SIGINT, signal.SIG_IGN))
 
 
 def guarded(program, run, *args):

@@ -27,10 +27,10 @@ STEP_M = 0.05  # what is flatter is driven over: a carpet
 
 # Colours by class, for what bears none of its own: a mean, how far objects stray from it in brightness, and in hue.
 # They overlap, `other` with all of them: the words of a view are learned, not looked up.
-COLOUR_MEAN = np.array([[.80, .77, .70], [.50, .39, .28], [.93, .93, .90], [.52, .60, .78], [.66, .45, .23],
-                        [.36, .24, .15], [.62, .30, .31], [.80, .86, .90], [.08, .08, .10], [.50, .52, .44]])
-BRIGHTNESS_STD = np.array([.06, .07, .03, .11, .08, .07, .11, .05, .03, .18])
-HUE_STD = np.array([.02, .03, .01, .06, .04, .03, .07, .02, .01, .12])
+COLOUR_MEAN = np.array([[.80, .77, .70], [.52, .41, .30], [.93, .93, .90], [.48, .58, .80], [.68, .45, .20],
+                        [.42, .20, .12], [.64, .28, .32], [.70, .82, .94], [.07, .07, .10], [.50, .54, .42]])
+BRIGHTNESS_STD = np.array([.05, .06, .02, .09, .07, .05, .09, .04, .02, .16])
+HUE_STD = np.array([.02, .03, .01, .05, .04, .03, .06, .02, .01, .10])
 
 
 class World:

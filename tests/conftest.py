@@ -17,29 +17,30 @@ FOUND = sorted((Path(__file__).parents[2] / "shared" / "homes").glob("*.json"))
 def thing(kind, x, y, length, width, height, z0=0.0, angle=0.0):
     """An object of a floor plan: a rectangle around (x, y), its length turned by `angle`."""
     u, v = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    corners = [(length / 2, width / 2), (-length / 2, width / 2), (-length / 2, -width / 2), (length / 2, -width / 2)]
-    polygon = [[x + a * u[0] + b * v[0], y + a * u[1] + b * v[1]] for a, b in corners]
+    corners = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * [length / 2, width / 2]
+    polygon = ((x, y) + corners @ [u, v]).tolist()
     return {"class": kind, "polygon": polygon, "z0": z0, "height": height}
 
 
 def room(*things, size=(6.0, 4.0), **others):
     """One room without doors, its lower left corner in the origin, and what is in it."""
     x, y = size
-    return {"name": "room", "walls": [[0, 0, x, 0], [x, 0, x, y], [x, y, 0, y], [0, y, 0, 0]], "objects": list(things),
-            **others}
+    walls = [[0, 0, x, 0], [x, 0, x, y], [x, y, 0, y], [0, y, 0, 0]]
+    return {"name": "room", "walls": walls, "objects": list(things), **others}
 
 
 TWO_ROOMS = {
     "name": "two rooms", "units": "m", "wall_height": 2.5,
-    "walls": [[0, 0, 7, 0], [7, 0, 7, 4], [7, 4, 0, 4], [0, 4, 0, 2.4], [0, 1.5, 0, 0], [4, 0, 4, 1.0], [4, 1.9, 4, 4]],
+    "walls": [[0, 0, 7, 0], [7, 0, 7, 4], [7, 4, 0, 4], [0, 4, 0, 2.4], [0, 1.5, 0, 0],
+              [4, 0, 4, 1.0], [4, 1.9, 4, 4]],
     "doors": [{"segment": [0, 1.5, 0, 2.4], "height": 2.0, "state": "closed"},
               {"segment": [4, 1.9, 4, 1.0], "height": 2.0, "state": "open"}],
     "rooms": [{"type": "bedroom", "polygon": [[0, 0], [4, 0], [4, 4], [0, 4]]},
               {"type": "kitchen", "polygon": [[4, 0], [7, 0], [7, 4], [4, 4]]}],
     "objects": [thing("bed", 1.1, 0.7, 1.9, 1.0, 0.5), thing("table", 1.2, 3.1, 1.2, 0.7, 0.74, angle=0.5),
-                thing("tv", 1.2, 3.1, 0.7, 0.1, 0.5, z0=0.74, angle=0.5), thing("sofa", 5.7, 3.2, 1.6, 0.8, 0.8, angle=-0.3),
-                thing("other", 2.6, 2.0, 0.5, 0.5, 0.4, z0=1.6, angle=0.2), thing("other", 5.6, 1.0, 1.4, 1.0, 0.02),
-                thing("refrigerator", 6.6, 0.4, 0.6, 0.6, 1.8)],
+                thing("tv", 1.2, 3.1, 0.7, 0.1, 0.5, z0=0.74, angle=0.5),
+                thing("sofa", 5.7, 3.2, 1.6, 0.8, 0.8, angle=-0.3), thing("refrigerator", 6.6, 0.4, 0.6, 0.6, 1.8),
+                thing("other", 2.6, 2.0, 0.5, 0.5, 0.4, z0=1.6, angle=0.2), thing("other", 5.6, 1.0, 1.4, 1.0, 0.02)],
 }
 
 

@@ -74,7 +74,7 @@ def labels(world, pose, size):
 
 
 def within_polygon(points, polygon):
-    """Which points lie within a polygon: those from which a ray to the right crosses its rim an odd number of times."""
+    """Which points lie within a polygon: a ray to the right crosses its rim an odd number of times."""
     inside = np.zeros(len(points), bool)
     for i, (x, y) in enumerate(points):
         for (x0, y0), (x1, y1) in zip(polygon, np.roll(polygon, -1, 0), strict=True):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gnl import draw
+from gnl import draw, floor_map
 from gnl.classes import BED, CLASSES, N_CLASSES, PALETTE, SOFA, WALL
 from gnl.places import PlaceGrid
 from gnl.scene_graph import scene_graph
@@ -36,37 +36,37 @@ def count(picture, colour):
 
 
 def test_metres_land_on_pixels_with_y_upwards(world):
-    plan = draw.Map(world, 640)  # 600 px for 6 m, and a rim of 20
+    plan = floor_map.Map(world, 640)  # 600 px for 6 m, and a rim of 20
     assert plan.picture().size == (640, 440)
     assert np.allclose(plan.at([[0, 0], [6, 4], [1, 3]]), [[20, 420], [620, 20], [120, 120]])
 
 
 def test_a_map_of_given_size_holds_the_whole_home_in_its_middle(world):
-    plan = draw.Map(world, 300, 600)
+    plan = floor_map.Map(world, 300, 600)
     assert plan.picture().size == (300, 600)
     low, high = plan.at([0, 0]), plan.at([6, 4])
     assert np.allclose(low + high, [300, 600])
 
 
 def test_things_stand_on_the_map_where_they_stand_in_the_home(world):
-    plan = draw.Map(world, 640)
+    plan = floor_map.Map(world, 640)
     assert colour_at(plan.picture(), plan.at([1, 3])) == tuple(PALETTE[BED])
     assert colour_at(plan.picture(), plan.at([4.5, 0.75])) == tuple(PALETTE[SOFA])
-    assert colour_at(plan.picture(), plan.at([3, 0])) == draw.WALLS
+    assert colour_at(plan.picture(), plan.at([3, 0])) == floor_map.WALLS
 
 
 def test_a_petal_points_to_the_bearings_of_its_place(world, grid):
     pose = np.array([3.2, 1.9, np.radians(100)])
-    plan = draw.Map(world, 640, grid=grid)
+    plan = floor_map.Map(world, 640, grid=grid)
     plan.belief(np.eye(grid.n_places)[grid.place_of(pose)])
     middle = np.array([3, 1])  # of the cell
     ahead = 0.8 * np.array([np.cos(np.radians(105)), np.sin(np.radians(105))])
-    assert np.abs(np.subtract(colour_at(plan.picture(), plan.at(middle + ahead)), draw.BELIEF)).max() < 20
+    assert np.abs(np.subtract(colour_at(plan.picture(), plan.at(middle + ahead)), floor_map.BELIEF)).max() < 20
     assert sum(colour_at(plan.picture(), plan.at(middle - ahead))) > 3 * 220
 
 
 def test_a_robot_sees_as_far_as_the_wall_and_not_behind_itself(world):
-    plan = draw.Map(world, 640)
+    plan = floor_map.Map(world, 640)
     before = plan.picture()
     plan.sight(np.array([3.0, 2.0, 0.0]))
     for xy, seen in (((5.8, 2), True), ((4.5, 3.4), True), ((2.5, 2), False), ((3.2, 3), False)):
@@ -76,7 +76,7 @@ def test_a_robot_sees_as_far_as_the_wall_and_not_behind_itself(world):
 def test_more_weight_is_more_dots(world, grid):
     x, y = np.repeat([1.0, 5.0], 50), np.full(100, 2.0)
     weight = np.repeat([1.0, 0.0], 50)
-    plan = draw.Map(world, 640)
+    plan = floor_map.Map(world, 640)
     before = plan.picture()
     plan.particles((x, y, np.zeros(100), weight), n=20)
     assert colour_at(plan.picture(), plan.at([1, 2])) != colour_at(before, plan.at([1, 2]))
@@ -84,7 +84,7 @@ def test_more_weight_is_more_dots(world, grid):
 
 
 def test_a_copied_map_is_a_sheet_of_its_own(world):
-    plan = draw.Map(world, 320)
+    plan = floor_map.Map(world, 320)
     before = plan.picture()
     plan.copy().robot(np.array([3.0, 2.0, 1.0]))
     assert plan.picture() == before
@@ -100,9 +100,9 @@ def test_a_wall_stands_in_the_strip_at_its_distance(world):
     dense = [part[0] for part in cast(world, np.array([[3.0, 2.0, 0.0]])).dense()]  # the wall is 2.95 m ahead
     picture = np.array(draw.strip(world, dense, 384, 412))  # 400 rows for 4 m
     column = picture[6:406, 34 + 349 // 2]
-    assert (column[400 - 294:-3] == draw.PAPER).all()
+    assert (column[400 - 294:-3] == floor_map.PAPER).all()
     assert (column[400 - 304:400 - 296] == PALETTE[WALL]).all()
-    assert (column[3:400 - 306] == draw.FAINT).all()
+    assert (column[3:400 - 306] == floor_map.FAINT).all()
 
 
 def test_a_graph_of_no_node_is_a_pale_picture():
@@ -138,11 +138,11 @@ def test_words_of_nodes_at_one_spot_do_not_cover_each_other():
 def test_the_true_place_is_green_wherever_it_ranks(grid, rank):
     values = 1 / np.arange(1, grid.n_places + 1)
     picture = np.array(draw.ranks(grid, values, rank - 1, n=5))
-    green = (picture == draw.RIGHT).all(-1).any(1)
+    green = (picture == floor_map.RIGHT).all(-1).any(1)
     row = min(rank, 5) - 1
-    assert green[row * draw.LINE_PX:(row + 1) * draw.LINE_PX].any()
-    assert not green[:row * draw.LINE_PX].any()
-    assert not green[(row + 1) * draw.LINE_PX:].any()
+    assert green[row * floor_map.LINE_PX:(row + 1) * floor_map.LINE_PX].any()
+    assert not green[:row * floor_map.LINE_PX].any()
+    assert not green[(row + 1) * floor_map.LINE_PX:].any()
 
 
 def test_pictures_of_a_sheet_do_not_cover_each_other():

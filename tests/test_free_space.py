@@ -53,16 +53,17 @@ def test_a_closed_room_is_inside_and_the_rest_is_not():
 def test_the_thinnest_wall_holds_wherever_it_stands(turn):
     for offset in np.linspace(0, RASTER_M, 8):
         middle = np.array([3 + offset, 2 + offset])
-        corners = [middle + 2 * np.array([np.cos(turn + k * np.pi / 2), np.sin(turn + k * np.pi / 2)]) for k in range(4)]
-        walls = [(*corners[k], *corners[k - 1]) for k in range(4)]
-        assert walled(*walls, bounds=(1, 0, 5, 4)).inside([middle, middle + [0.5, -0.5], middle + [1.6, 1.6]]).tolist() == [
-            True, True, False]
+        bearings = turn + np.arange(4) * np.pi / 2
+        corners = middle + 2 * np.stack([np.cos(bearings), np.sin(bearings)], 1)
+        space = walled(*[(*corners[k], *corners[k - 1]) for k in range(4)], bounds=(1, 0, 5, 4))
+        assert space.inside([middle, middle + [0.5, -0.5], middle + [1.6, 1.6]]).tolist() == [True, True, False]
 
 
 def test_a_ball_stays_out_of_a_narrow_gap_and_rolls_in_by_a_wide_one():
     def with_gap(width):
         """Two rooms side by side; the left one is open to the west."""
-        return walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (3, 0, 3, 4), (0, 0, 0, 2 - width / 2), (0, 2 + width / 2, 0, 4))
+        return walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (3, 0, 3, 4),
+                      (0, 0, 0, 2 - width / 2), (0, 2 + width / 2, 0, 4))
     assert with_gap(2 * GATE_M - 0.2).inside([[1.5, 2], [4.5, 2]]).tolist() == [True, True]
     assert with_gap(2 * GATE_M + 0.3).inside([[1.5, 2], [4.5, 2]]).tolist() == [False, True]
 

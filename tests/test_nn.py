@@ -131,6 +131,15 @@ def test_loss_is_minus_log_of_the_right_probability_and_its_gradient_that_of_cen
     assert error < CLOSE
 
 
+@pytest.mark.parametrize("axis", [0, 1, -1])
+def test_classes_may_lie_along_any_axis(axis):
+    scores, labels = normal(0, 2, 3, 4, 5), np.random.default_rng(1).integers(5, size=(2, 3, 4))
+    loss, dscores = nn.softmax_cross_entropy(scores, labels)
+    moved_loss, moved_dscores = nn.softmax_cross_entropy(np.moveaxis(scores, -1, axis), labels, axis)
+    assert moved_loss == pytest.approx(loss)
+    np.testing.assert_allclose(np.moveaxis(moved_dscores, axis, -1), dscores)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_loss_of_a_probability_of_zero_is_finite_and_great(dtype):
     loss, dscores = nn.softmax_cross_entropy(np.array([[0, 5000, 0]], dtype), np.array([2]))

@@ -26,7 +26,8 @@ def transitions(seed, n_steps, B=6, n_different=40):
     known = random_states(rng, n_different)
     for _ in range(n_steps):
         which, then = rng.integers(n_different, size=(2, B))
-        yield (known[which], rng.integers(A, size=B), rng.choice([-1.0, 1.0], size=B), known[then], rng.random(B) < 0.3)
+        actions, rewards = rng.integers(A, size=B), rng.choice([-1.0, 1.0], size=B)
+        yield known[which], actions, rewards, known[then], rng.random(B) < 0.3
 
 
 def lived(n_steps, seed=0, **options):

@@ -29,7 +29,7 @@ def state(belief):
 
 @pytest.mark.parametrize("k", [3, 8])
 def test_the_filter_approaches_exact_bayes(k, monkeypatch):
-    """Total variation over 8 places with 100,000 particles; measured 0.003 on average, 0.011 at most over 12 seeds."""
+    """Total variation over 8 places with 100,000 particles: measured 0.003, at most 0.011 over 12 seeds."""
     monkeypatch.setattr(particles, "STD_M", 0.2)
     monkeypatch.setattr(particles, "STD_RAD", 0.2)
     grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 4, 2)), n_bearings=4)

@@ -85,7 +85,8 @@ def test_every_point_of_a_polygon_lies_in_its_cover_and_the_cover_in_one_rectang
         assert area_of(cover) <= area_of(smallest_rectangle(star)) + 1e-9
 
 
-@pytest.mark.parametrize("points", [[[1, 1], [1, 1], [1, 1]], [[0, 0], [1, 0], [3, 0]], [[0, 0], [2, 2], [0, 0], [1, 1]],
+@pytest.mark.parametrize("points", [[[1, 1], [1, 1], [1, 1]], [[0, 0], [1, 0], [3, 0]],
+                                    [[0, 0], [2, 2], [0, 0], [1, 1]],
                                     [[0, 0], [1, 0], [1, 0], [1, 1], [0, 1], [0, 1]]])
 def test_a_polygon_without_area_or_with_points_told_twice_is_covered(points):
     cover = cover_polygon(points)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gnl import draw, episode, planners, replay, segnet
+from gnl import draw, episode, floor_map, planners, replay, segnet
 from gnl.gcn import GCN
 from gnl.nnql import NNQL
 from gnl.places import PlaceGrid
@@ -71,7 +71,7 @@ def test_a_frame_for_each_look_each_decision_and_some_between(parts, looks, tmp_
         assert film.info["loop"] == 0  # for ever
         assert film.info["duration"] == 1600
         page = np.array(film.convert("RGB"))
-    for colour in (draw.PAPER, draw.PALETTE[3], draw.ROBOT):
+    for colour in (floor_map.PAPER, draw.PALETTE[3], floor_map.ROBOT):
         assert (page == colour).all(-1).any(), colour
 
 
@@ -79,7 +79,7 @@ def test_right_answers_are_green_and_wrong_ones_red(parts, looks):
     world, grid, *_ = parts
     pictures = [np.array(picture) for picture, seconds in replay.frames(looks[:1], world, grid)]
     dot = pictures[0][28, 944]
-    assert tuple(dot) == (draw.RIGHT if looks[0].answer == looks[0].place else draw.WRONG)
+    assert tuple(dot) == (floor_map.RIGHT if looks[0].answer == looks[0].place else floor_map.WRONG)
 
 
 def test_an_episode_of_one_look_is_one_frame(parts):

@@ -29,14 +29,14 @@ def params():
 def test_every_gradient_is_that_of_central_differences(params):
     rng = np.random.default_rng(2)
     rgb = rng.integers(256, size=(3, 16, 16, 3), dtype=np.uint8)
-    labels = rng.integers(10, size=(3, 16, 16))
+    labels = rng.integers(10, size=(4, 3, 8, 8))
 
     def loss():
-        return nn.softmax_cross_entropy(segnet.forward(params, rgb)[0], labels)[0]
+        return nn.softmax_cross_entropy(segnet.forward(params, rgb)[0], labels, axis=0)[0]
 
     scores, cache = segnet.forward(params, rgb)
-    grads = segnet.backward(params, nn.softmax_cross_entropy(scores, labels)[1], cache)
-    assert scores.shape == (3, 16, 16, 10)
+    grads = segnet.backward(params, nn.softmax_cross_entropy(scores, labels, axis=0)[1], cache)
+    assert scores.shape == (10, 4, 3, 8, 8)
     assert grads.keys() == params.keys()
     for name, p in params.items():
         assert grads[name].shape == p.shape
@@ -49,7 +49,7 @@ def test_every_pixel_hears_of_every_other_one(params):
     far = rgb.copy()
     far[0, :4, :4] = 255
     before, after = (segnet.forward(params, image)[0] for image in (rgb, far))
-    assert (abs(after - before).max(-1) > 0).all()
+    assert (abs(after - before).max(0) > 0).all()
 
 
 def test_a_new_residual_block_changes_nothing():
@@ -58,30 +58,36 @@ def test_a_new_residual_block_changes_nothing():
     assert {p.dtype for p in params.values()} == {np.dtype(np.float32)}
 
 
+def channels(rgb):
+    """The four channels of each pixel that the net sees, (B, H, H, 4)."""
+    B, H, W, _ = rgb.shape
+    quads = segnet.standardise(rgb, np.float64).reshape(B, H // 2, W // 2, 2, 2, 4)
+    return quads.transpose(0, 1, 3, 2, 4, 5).reshape(B, H, W, 4)
+
+
 def test_standardised_views_have_no_offset_and_no_gain_of_exposure():
     rgb = np.random.default_rng(0).integers(100, size=(2, 16, 16, 3), dtype=np.uint8)
-    seen = segnet.standardise(rgb, np.float64)
-    spread = rgb.reshape(2, -1).std(1)
-    np.testing.assert_allclose(seen[..., :3].reshape(2, -1).mean(1), 0, atol=1e-12)
-    np.testing.assert_allclose(seen[..., :3].reshape(2, -1).std(1), spread / (spread + 1))
-    np.testing.assert_allclose(segnet.standardise(rgb + np.uint8(90), np.float64), seen, atol=1e-12)
+    seen, spread = channels(rgb)[..., :3], rgb.std((1, 2, 3))
+    np.testing.assert_allclose(seen.mean((1, 2, 3)), 0, atol=1e-12)
+    np.testing.assert_allclose(seen.std((1, 2, 3)), spread / (spread + 1))
+    np.testing.assert_allclose(channels(rgb + np.uint8(90))[..., :3], seen, atol=1e-12)
     # The 1 in spread + 1 keeps a view of one colour finite; it costs 1 / spread of the gain.
-    np.testing.assert_allclose(segnet.standardise(rgb * np.uint8(2), np.float64)[..., :3], seen[..., :3],
-                               rtol=1 / spread.min())
-    assert not segnet.standardise(np.full((1, 8, 8, 3), 7, np.uint8))[..., :3].any()
+    np.testing.assert_allclose(channels(rgb * np.uint8(2))[..., :3], seen, rtol=1 / spread.min())
+    assert not channels(np.full((1, 8, 8, 3), 7, np.uint8))[..., :3].any()
+    np.testing.assert_allclose((seen * (spread + 1)[:, None, None, None])[1, 5, 3], rgb[1, 5, 3] - rgb[1].mean())
 
 
 def test_each_row_knows_how_high_it_is():
-    height = segnet.standardise(np.zeros((2, 5, 5, 3), np.uint8))[..., 3]
-    np.testing.assert_array_equal(height, np.broadcast_to(np.array([1, .5, 0, -.5, -1])[:, None], (2, 5, 5)))
+    height = channels(np.zeros((2, 6, 6, 3), np.uint8))[..., 3]
+    np.testing.assert_allclose(height, np.broadcast_to(np.array([1, .6, .2, -.2, -.6, -1])[:, None], (2, 6, 6)))
 
 
-def test_unfold_lays_out_a_pixel_as_two_by_two_and_fold_is_the_way_back():
-    x = np.random.default_rng(0).standard_normal((2, 3, 5, 4 * 7))
-    unfolded = segnet._unfold(x)
-    assert unfolded.shape == (2, 6, 10, 7)
-    np.testing.assert_array_equal(segnet._fold(unfolded), x)
-    np.testing.assert_array_equal(unfolded[1, 2:4, 6:8].reshape(-1), x[1, 1, 3])
+def test_quads_are_read_like_a_page_and_laid_out_again():
+    images = np.random.default_rng(0).integers(100, size=(3, 6, 10))
+    quads = segnet.to_quads(images)
+    assert quads.shape == (4, 3, 3, 5)
+    np.testing.assert_array_equal(segnet.from_quads(quads), images)
+    assert quads[:, 1, 2, 4].tolist() == images[1, 4:6, 8:10].ravel().tolist()
 
 
 def test_a_little_training_halves_the_loss(views):
@@ -107,7 +113,7 @@ def test_one_seed_trains_one_net(views):
 
 @pytest.mark.parametrize("chunk", [1, 3, 16])
 def test_labels_predicted_in_chunks_are_those_predicted_at_once(views, params, chunk):
-    at_once = segnet.forward(params, views[0])[0].argmax(-1)
+    at_once = segnet.from_quads(segnet.forward(params, views[0])[0].argmax(0))
     labels = segnet.predict(params, views[0], chunk)
     np.testing.assert_array_equal(labels, at_once)
     assert labels.dtype == np.uint8

@@ -6,17 +6,17 @@ import pymunk
 import pytest
 from conftest import room, strewn_plan, thing
 
-from gnl.classes import DOOR, SOFA, TABLE
+from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, WALL
+from gnl.free_space import box_distance
 from gnl.strip import NEAREST_M, cast, slopes
 from gnl.world import World
 
 
 def poses_clear_of(world, n, seed=0):
-    """Poses anywhere in the bounds, 10 cm from every box, under lamps excluded: pymunk sees nothing from within."""
-    rng, b = np.random.default_rng(seed), np.ones(len(world.label), bool)
-    from gnl.free_space import box_distance
+    """Poses anywhere in the bounds, 10 cm from every outline: from within a box pymunk sees nothing of it."""
+    rng = np.random.default_rng(seed)
     poses = rng.uniform([*world.bounds[:2], -np.pi], [*world.bounds[2:], np.pi], (200 * n, 3))
-    clear = box_distance(poses[:, :2], world.centre[b], world.half[b], world.angle[b]).min(1) > 0.1
+    clear = box_distance(poses[:, :2], world.centre, world.half, world.angle).min(1) > 0.1
     return poses[clear][:n]
 
 
@@ -76,8 +76,8 @@ def test_all_crossings_are_those_of_slabs_ray_by_ray(home):
 
 
 def test_all_crossings_are_those_of_slabs_in_a_strewn_room(strewn):
-    poses = np.random.default_rng(0).uniform([0.2, 0.2, -np.pi], [7.8, 4.8, np.pi], (5, 3))  # also from within boxes
-    assert_strip_is_the_naive_one(strewn, poses)
+    poses = np.random.default_rng(0).uniform([0.2, 0.2, -np.pi], [7.8, 4.8, np.pi], (12, 3))  # also from within boxes
+    assert_strip_is_the_naive_one(strewn, poses, 20)
 
 
 def test_all_crossings_are_those_of_slabs_in_a_real_home(real_home):
@@ -91,24 +91,40 @@ def test_crossings_go_from_near_to_far_and_end_at_a_wall(strewn):
     assert (near[..., 1:] >= near[..., :-1]).all()
     assert (far[crossed] > near[crossed]).all()
     last = np.take_along_axis(box, crossed.sum(-1, keepdims=True) - 1, -1)
-    assert (strewn.label[last] == 0).all()
+    assert (last >= 0).all()
+    assert (strewn.label[last] == WALL).all()
 
 
 def test_a_wall_hides_what_is_behind_it_and_a_doorway_shows_it(two_rooms):
-    def seen(pose):
-        return set(two_rooms.label[np.unique(cast(two_rooms, np.array([pose])).dense()[2])[1:]])
-    sofa_room = (5.0, 1.4, np.pi)  # looks west through the door
-    assert TABLE not in seen((5.7, 2.3, np.pi))
-    assert {0, DOOR} <= seen(sofa_room)
-    assert SOFA in seen((4.6, 3.0, 0.0))
-    beyond_door = seen((3.2, 1.45, 0.0))
-    assert 9 in beyond_door  # the carpet in the other room
+    def seen(x, y, theta):
+        box = cast(two_rooms, np.array([[x, y, theta]])).dense()[2]
+        return set(two_rooms.label[box[box >= 0]])
+    assert seen(5.2, 3.0, 0.0) == {WALL, SOFA}
+    assert TABLE not in seen(4.6, 2.9, np.pi)  # it stands right behind the wall
+    assert OTHER in seen(3.3, 1.45, 0.0)  # through the open door: the carpet
+    assert DOOR in seen(1.0, 1.95, np.pi)  # the shut one
 
 
 def test_lower_walls_do_not_hide_what_is_behind_them():
     world = World(room(thing("wall", 3, 2, 0.1, 4, 1.1), thing("bed", 5, 2, 1, 1, 0.5)))
     box = cast(world, np.array([[1.0, 2.0, 0.0]]), 9).dense()[2][0, 4]
-    assert world.label[box[box >= 0]].tolist() == [0, 3, 0]
+    assert world.label[box[box >= 0]].tolist() == [WALL, BED, WALL]
+
+
+def test_a_wall_that_goes_on_behind_the_camera_is_seen_out_to_the_rim():
+    # Almost alongside a long wall on the left, its far end behind the camera and to the right of its axis.
+    near, _, box = cast(World(room(size=(20.0, 4.0))), np.array([[5.0, 3.0, 0.2]]), 16).dense()
+    assert box[0, 0, 0] == 2
+    bearing = 0.2 + np.arctan(slopes(16)[0])
+    np.testing.assert_allclose(near[0, 0, 0], 0.95 / np.sin(bearing))
+
+
+def test_a_camera_in_the_plane_of_a_side_sees_past_it():
+    world = World(room(thing("bed", 4, 1.5, 1, 1, 0.5)))  # its side lies in y = 2
+    near, _, box = cast(world, np.array([[1.0, 2.0, 0.0], [1.0, 2.0, np.pi / 4], [4.0, 3.0, -np.pi / 2]]), 64).dense()
+    assert not (box[0, :32] == 4).any()  # it lies to the right of the axis
+    assert (box[0, 32:42, 0] == 4).all()
+    assert np.isfinite(near[..., 0]).all()
 
 
 def test_distances_are_along_the_ray():
@@ -123,8 +139,9 @@ def test_column_0_is_the_leftmost_of_ninety_degrees():
     np.testing.assert_allclose(slopes(512)[[0, -1]], [511 / 512, -511 / 512])
     world = World(room(thing("bed", 4, 3, 0.5, 0.5, 0.5), thing("sofa", 4, 1, 0.5, 0.5, 0.5)))
     box = cast(world, np.array([[1.0, 2.0, 0.0]])).dense()[2][0]
-    columns = [np.flatnonzero((world.label[box] == label).any(-1) & (box >= 0).any(-1)) for label in (3, 6)]
-    assert columns[0].max() < 256 <= columns[1].min()
+    bed, sofa = (np.flatnonzero((box == np.flatnonzero(world.label == label)).any(-1)) for label in (BED, SOFA))
+    assert bed.max() < 256 <= sofa.min()
+    np.testing.assert_array_equal(bed, 511 - sofa[::-1])
 
 
 def moved(plan, angle, shift, mirror=1):

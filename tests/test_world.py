@@ -96,7 +96,8 @@ def test_class_names_know_no_case_and_a_name_that_is_no_class_is_other():
 def test_a_thing_is_the_box_that_the_plan_says():
     world = World(room(thing("table", 2, 1.5, 1.2, 0.7, 0.7, z0=0.1, angle=0.5)))
     c, s = np.cos(0.5), np.sin(0.5)
-    expected = {tuple(np.round((2 + a * c - b * s, 1.5 + a * s + b * c), 6)) for a in (0.6, -0.6) for b in (0.35, -0.35)}
+    expected = {tuple(np.round((2 + a * c - b * s, 1.5 + a * s + b * c), 6))
+                for a in (0.6, -0.6) for b in (0.35, -0.35)}
     (table,) = boxes_of(world, TABLE)
     assert corners(world, table) == expected
     np.testing.assert_allclose(world.z[table], (0.1, 0.8))

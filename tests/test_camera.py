@@ -1,0 +1,154 @@
+"""What a pixel shows is what its ray meets first, against a renderer that asks each ray."""
+
+import naive
+import numpy as np
+import pytest
+from conftest import room, thing
+
+from gnl.camera import HEIGHT_M, render, row_of, true_labels
+from gnl.classes import BED, CEILING, DOOR, FLOOR, OTHER, REFRIGERATOR, SOFA, TABLE, TV, WALL
+from gnl.world import World
+
+
+def agreement(world, poses, size=64):
+    """Share of pixels on which camera and naive renderer agree."""
+    expected = np.array([naive.labels(world, pose, size) for pose in poses])
+    return (true_labels(world, poses, size) == expected).mean()
+
+
+def column_of(world, pose, size=512, column=None):
+    """One column of a view, the middle one unless told, from the top."""
+    return true_labels(world, np.array([pose]), size)[0, :, size // 2 if column is None else column]
+
+
+def runs(column):
+    """The classes of a column from the top, neighbours merged."""
+    return column[np.r_[True, column[1:] != column[:-1]]].tolist()
+
+
+def test_labels_are_those_of_a_ray_per_pixel_in_procedural_homes(home):
+    assert agreement(home, home.free_poses(6, np.random.default_rng(0))) >= 0.999
+
+
+def test_labels_are_those_of_a_ray_per_pixel_among_things_carried_and_hanging(strewn):
+    poses = np.random.default_rng(0).uniform([0.3, 0.3, -np.pi], [7.7, 4.7, np.pi], (60, 3))
+    poses = poses[strewn.is_free(poses[:, :2], radius_m=0.05)][:8]
+    assert len(poses) == 8
+    assert agreement(strewn, poses) >= 0.999
+
+
+def test_labels_are_nearly_those_of_a_ray_per_pixel_in_real_homes_whose_things_overlap(real_home):
+    assert agreement(real_home, real_home.free_poses(5, np.random.default_rng(0))) >= 0.985
+
+
+def test_of_nothing_one_sees_ceiling_above_the_horizon_and_floor_below():
+    labels = true_labels(World(room()), np.array([[-5.0, 2.0, np.pi]]), 64)[0]
+    assert (labels[:32] == CEILING).all()
+    assert (labels[32:] == FLOOR).all()
+
+
+def test_no_floor_is_above_the_horizon_and_no_ceiling_below(home):
+    labels = true_labels(home, home.free_poses(20, np.random.default_rng(1)), 64)
+    assert not (labels[:, :32] == FLOOR).any()
+    assert not (labels[:, 32:] == CEILING).any()
+
+
+def test_a_wall_stands_between_ceiling_and_floor_where_geometry_says():
+    column = column_of(World(room()), (1.95, 2.0, 0.0))  # 4 m before the wall's face, 512 px over 90 degrees
+    top, foot = 256 * (1 - (2.5 - HEIGHT_M) / 4), 256 * (1 + HEIGHT_M / 4)
+    assert runs(column) == [CEILING, WALL, FLOOR]
+    assert (column == WALL).sum() == foot - top
+    assert column[int(top)] == WALL
+    assert column[int(top) - 1] == CEILING
+    assert (row_of(2.5, 1 / 4, 512), row_of(0.0, 1 / 4, 512)) == (top, foot)
+
+
+def test_a_wall_stands_above_an_open_door(two_rooms):
+    column = column_of(two_rooms, (1.95, 1.45, 0.0))  # 2 m before the wall in which the door is
+    top, edge = (int(256 * (1 - (z - HEIGHT_M) / 2)) for z in (2.5, 2.0))
+    assert (column[top:edge] == WALL).all()
+    assert (column[:top] == CEILING).all()
+    assert column[edge + 20] == CEILING  # that of the next room
+    assert runs(column[edge + 20:]) == [CEILING, WALL, FLOOR, OTHER, FLOOR]  # its far wall, the carpet
+
+
+def test_a_shut_door_fills_its_doorway_up_to_the_wall_above(two_rooms):
+    assert runs(column_of(two_rooms, (2.05, 1.95, np.pi))) == [CEILING, WALL, DOOR, FLOOR]
+
+
+def test_a_table_shows_its_top_and_a_refrigerator_does_not():
+    for kind, height, visible in [("table", 0.75, True), ("refrigerator", 1.8, False)]:
+        column = column_of(World(room(thing(kind, 3.5, 2, 1.0, 1, height))), (1.0, 2.0, 0.0))
+        near, far = 2.0, 3.0
+        foot, front, back = (256 * (1 + (HEIGHT_M - z) / d) for z, d in [(0, near), (height, near), (height, far)])
+        label, expected = (TABLE, foot - back) if visible else (REFRIGERATOR, foot - front)
+        assert abs((column == label).sum() - expected) <= 1
+
+
+def test_a_lamp_shows_its_underside():
+    column = column_of(World(room(thing("other", 3.5, 2, 1.0, 1, 0.4, z0=1.75))), (1.0, 2.0, 0.0))
+    top, _, back = (256 * (1 - (z - HEIGHT_M) / d) for z, d in [(2.15, 2), (1.75, 2), (1.75, 3)])
+    assert abs((column == OTHER).sum() - (back - top)) <= 1
+
+
+def test_a_camera_below_a_lamp_sees_its_underside_overhead():
+    column = column_of(World(room(thing("other", 3, 2, 2.0, 3, 0.4, z0=1.75))), (3.0, 2.0, 0.0))
+    assert runs(column) == [OTHER, CEILING, WALL, FLOOR]
+
+
+def test_what_stands_on_a_table_hides_its_top_and_not_its_front():
+    world = World(room(thing("table", 3, 2, 1, 2, 0.7), thing("tv", 3, 2, 0.1, 1, 0.4, z0=0.7)))
+    assert runs(column_of(world, (1.0, 2.0, 0.0))) == [CEILING, WALL, TV, TABLE, FLOOR]
+
+
+def test_the_nearer_hides_the_farther():
+    near, far = thing("refrigerator", 2.5, 2, 0.5, 1, 1.8), thing("bed", 4.5, 2, 1, 1, 0.5)
+    assert BED not in column_of(World(room(near, far)), (1.0, 2.0, 0.0))
+    assert BED in column_of(World(room(far)), (1.0, 2.0, 0.0))
+    world = World(room(thing("sofa", 2.5, 2, 0.5, 1, 0.4), thing("refrigerator", 4.5, 2, 0.5, 1, 1.8)))
+    assert runs(column_of(world, (0.6, 2.0, 0.0))) == [CEILING, WALL, REFRIGERATOR, FLOOR, SOFA, FLOOR]
+
+
+def test_of_more_things_than_a_column_can_hold_the_nearest_are_seen():
+    row = [thing("table", 2 + 0.1 * i, 2, 0.05, 1, 0.7) for i in range(80)]
+    alone = World(room(*row[:1], size=(12.0, 4.0)))
+    world = World(room(*row, size=(12.0, 4.0)))
+    column = column_of(world, (1.0, 2.0, 0.0))
+    front = column_of(alone, (1.0, 2.0, 0.0)) == TABLE
+    assert (column[front] == TABLE).all()
+    assert set(column) <= {CEILING, WALL, TABLE, FLOOR}
+    assert agreement(world, np.array([[1.0, 2.0, 0.0]])) > 0.9
+    screen = thing("refrigerator", 1.9, 2, 0.05, 1, 2.0)
+    np.testing.assert_array_equal(column_of(World(room(screen, *row, size=(12.0, 4.0))), (1.0, 2.0, 0.0)),
+                                  column_of(World(room(screen, size=(12.0, 4.0))), (1.0, 2.0, 0.0)))
+
+
+def test_small_views_show_what_large_views_show(home):
+    poses = home.free_poses(8, np.random.default_rng(2))
+    small, large = true_labels(home, poses, 64), true_labels(home, poses, 512)
+    blocks = large.reshape(8, 64, 8, 64, 8).transpose(0, 1, 3, 2, 4).reshape(8, 64, 64, 64)
+    majority = (blocks[..., None] == np.arange(10)).sum(-2).argmax(-1)
+    assert (small == majority).mean() >= 0.97
+
+
+def test_many_views_are_rendered_as_each_would_alone(home):
+    poses = home.free_poses(70, np.random.default_rng(3))
+    rgb, labels = render(home, poses, np.random.default_rng(0), 64, noise=0)
+    for v in range(0, 70, 9):
+        alone_rgb, alone_labels = render(home, poses[v:v + 1], np.random.default_rng(0), 64, noise=0)
+        np.testing.assert_array_equal(labels[v], alone_labels[0])
+        np.testing.assert_array_equal(rgb[v], alone_rgb[0])
+
+
+@pytest.mark.parametrize("size", [64, 512])
+def test_true_labels_are_those_of_the_rendered_view(home, size):
+    poses = home.free_poses(3, np.random.default_rng(4))
+    rgb, labels = render(home, poses, np.random.default_rng(0), size)
+    np.testing.assert_array_equal(true_labels(home, poses, size), labels)
+    assert (labels.shape, labels.dtype) == ((3, size, size), np.uint8)
+    assert (rgb.shape, rgb.dtype) == ((3, size, size, 3), np.uint8)
+
+
+def test_no_view_at_all_is_no_error(home):
+    rgb, labels = render(home, np.empty((0, 3)), np.random.default_rng(0), 64)
+    assert (rgb.shape, labels.shape) == ((0, 64, 64, 3), (0, 64, 64))

@@ -1,0 +1,245 @@
+"""One seed is one run; planners meet the same luck until their actions differ; each step is told to the learner."""
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import gnl
+from data_gen.rooms import make_home
+from gnl import episode, planners
+from gnl.episode import Record, Senses, best_sequence, likelihood, run, run_all, train_nnql
+from gnl.gcn import GCN
+from gnl.places import PlaceGrid, wrap_angle
+from gnl.ranks import reciprocal_ranks
+from gnl.robot import FORWARD, LEFT, N_ACTIONS, RIGHT, Motion, Robot
+
+GRID = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
+K = GRID.n_places
+
+
+class Sense:
+    """Senses that score places by a function of the poses, and no noise."""
+
+    def __init__(self, score):
+        self.score = score
+
+    def scores(self, poses, rng):
+        return self.score(poses)
+
+    def timed(self, _stage, function, *args):
+        return function(*args)
+
+
+class Glide:
+    """A robot without obstacles."""
+
+    def step(self, poses, actions, rng):
+        m = Motion()
+        forward, turn = np.where(actions == FORWARD, m.forward_m, 0), np.choose(actions, [m.turn_rad, -m.turn_rad, 0])
+        x, y, theta = poses.T
+        moved = np.stack([x + forward * np.cos(theta), y + forward * np.sin(theta), wrap_angle(theta + turn)], 1)
+        noise = rng.normal(0, 0.01, (len(poses), 2))
+        return moved, np.stack([forward, turn], 1) + noise, np.zeros(len(poses), bool)
+
+
+def knows(poses):
+    """Great scores for the true place."""
+    return 20.0 * np.eye(K)[GRID.place_of(poses)]
+
+
+def mistakes(poses):
+    """Great scores for the place opposite."""
+    return 20.0 * np.eye(K)[(GRID.place_of(poses) + K // 2) % K]
+
+
+def starts(n, seed=0):
+    """Poses away from the rim; `seed` may be a generator."""
+    return np.random.default_rng(seed).uniform((2, 2, -np.pi), (6, 4, np.pi), (n, 3))
+
+
+def home_of(seed=3):
+    """A home with the paper's senses, but a GCN that has learned nothing."""
+    home = make_home(seed)
+    grid = PlaceGrid(home)
+    return Senses(home, None, GCN(grid.n_places, np.random.default_rng(0), hidden=8)), Robot(home), grid
+
+
+def assert_equal(one, other, episodes=slice(None), n_looks=None):
+    """Whether two records agree bit by bit in some episodes, up to some look."""
+    for name in Record.__dataclass_fields__:
+        n = n_looks and n_looks - (name == "actions")
+        np.testing.assert_array_equal(getattr(one, name)[episodes, :n], getattr(other, name)[episodes, :n])
+
+
+def test_an_episode_has_a_look_at_the_start_and_one_after_each_action():
+    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(7), 0, length=5)
+    assert (record.poses.shape, record.actions.shape, record.answers.shape) == ((7, 6, 3), (7, 5), (7, 6))
+    np.testing.assert_array_equal(record.poses[:, 0], starts(7))
+    np.testing.assert_array_equal(record.places, GRID.place_of(record.poses))
+    np.testing.assert_array_equal(record.correct, record.answers == record.places)
+    assert (record.actions < N_ACTIONS).all()
+    assert (record.belief >= 0).all()
+    assert (record.belief <= 1 + 1e-5).all()
+
+
+def test_who_knows_is_right_and_who_mistakes_is_wrong():
+    assert run(Sense(knows), Glide(), GRID, planners.scan([LEFT] * 4), starts(20), 0).correct.all()
+    assert not run(Sense(mistakes), Glide(), GRID, planners.scan([LEFT] * 4), starts(20), 0).correct.any()
+
+
+def test_who_stays_has_one_look_and_one_answer():
+    record = run(Sense(knows), Glide(), GRID, planners.stay, starts(5), 0)
+    assert (record.poses.shape, record.actions.shape, record.answers.shape) == ((5, 1, 3), (5, 0), (5, 1))
+
+
+def test_planners_meet_the_same_luck_until_their_actions_differ():
+    """Through camera, noise, robot and filter: actions from three planners, of which two agree for some robots."""
+    senses, robot, grid = home_of()
+    poses = senses.world.free_poses(6, np.random.default_rng(0))
+
+    def differs_for_some(step, states, rng):
+        rng.random(100)  # who explores more than another draws from a stream of its own
+        return np.where(np.arange(6) < 3, LEFT, FORWARD if step else LEFT)
+
+    scan, other, nobody = (run(senses, robot, grid, plan, poses, 5) for plan in
+                           (planners.scan([LEFT] * 4), differs_for_some, planners.stay))
+    assert_equal(scan, other, episodes=slice(3))
+    assert_equal(scan, other, n_looks=2)
+    assert_equal(scan, nobody, n_looks=1)
+    assert (scan.poses[3:, 2:] != other.poses[3:, 2:]).any()
+
+
+def test_another_seed_is_another_run():
+    a, again, b = (run(Sense(knows), Glide(), GRID, planners.chance, starts(9), seed) for seed in (0, 0, 1))
+    assert_equal(a, again)
+    assert (a.actions != b.actions).any()
+    assert (a.belief != b.belief).any()
+
+
+def fingerprint():
+    """Every bit of some episodes, training and search in a home with the paper's senses."""
+    senses, robot, grid = home_of()
+    learner = train_nnql(senses, robot, grid, senses.world.free_poses, 40, 7, checkpoint_every=20)
+    poses = senses.world.free_poses(5, np.random.default_rng(1))
+    record = run_all(senses, robot, grid, planners.greedy(learner), poses, 11)
+    bits = b"".join(np.ascontiguousarray(array).tobytes() for array in (*vars(record).values(), *learner.values))
+    return hashlib.sha256(bits).hexdigest()
+
+
+def test_one_seed_gives_the_same_bits_in_a_fresh_process():
+    paths = os.pathsep.join([str(Path(gnl.__file__).parents[1]), str(Path(__file__).parent)])
+    fresh = subprocess.run([sys.executable, "-c", "import test_episode; print(test_episode.fingerprint())"],
+                           env={**os.environ, "PYTHONPATH": paths, "PYTHONHASHSEED": "1"},
+                           capture_output=True, text=True, check=True)
+    assert fresh.stdout.strip() == fingerprint()
+
+
+def test_many_episodes_are_their_groups_one_after_the_other(monkeypatch):
+    monkeypatch.setattr(episode, "SIDE_BY_SIDE", 4)
+    senses, plan, poses = Sense(knows), planners.chance, starts(10)
+    together = run_all(senses, Glide(), GRID, plan, poses, 3)
+    seeds = np.random.SeedSequence(3).spawn(3)
+    for first, seed in zip((0, 4, 8), seeds, strict=True):
+        group = slice(first, first + 4)
+        alone = run(senses, Glide(), GRID, plan, poses[group], seed)
+        for name in Record.__dataclass_fields__:
+            np.testing.assert_array_equal(getattr(together, name)[group], getattr(alone, name))
+    assert len(together.poses) == 10
+
+
+def test_the_likelihood_is_a_probability_and_a_floor_below_it():
+    found = likelihood(np.array([[0.0, 0, 0, 500]]))
+    np.testing.assert_allclose(found, [[1e-3, 1e-3, 1e-3, 1.001]], rtol=1e-6)
+
+
+class Diary:
+    """A learner that only writes down what it is told."""
+
+    def __init__(self):
+        self.steps = []
+
+    def learn(self, *step):
+        self.steps.append(step)
+
+
+@pytest.mark.parametrize(("score", "reward"), [(knows, 1.0), (mistakes, -1.0)])
+def test_the_learner_is_told_each_step_with_the_right_reward(score, reward):
+    diary, poses = Diary(), starts(6)
+    record = run(Sense(score), Glide(), GRID, planners.chance, poses, 0, length=3, learner=diary)
+    assert len(diary.steps) == 3
+    for step, (states, actions, rewards, next_states, done) in enumerate(diary.steps):
+        np.testing.assert_array_equal(states, reciprocal_ranks(score(record.poses[:, step])))
+        np.testing.assert_array_equal(next_states, reciprocal_ranks(score(record.poses[:, step + 1])))
+        np.testing.assert_array_equal(actions, record.actions[:, step])
+        assert rewards.tolist() == [reward] * 6
+        assert done.tolist() == [step == 2] * 6
+
+
+def test_whoever_watches_sees_every_look():
+    seen = []
+    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(3), 0, length=2,
+                 watch=lambda step, **what: seen.append((step, what)))
+    assert [step for step, _ in seen] == [0, 1, 2]
+    for step, what in seen:
+        np.testing.assert_array_equal(what["poses"], record.poses[:, step])
+        np.testing.assert_array_equal(what["pooled"].argmax(1), record.answers[:, step])
+
+
+def test_training_explores_first_then_keeps_checkpoints_and_says_how_far_it_is():
+    told = []
+    learner = train_nnql(Sense(knows), Glide(), GRID, starts, 100, 0, checkpoint_every=40,
+                         progress=lambda share, right: told.append((share, right)))
+    assert len(learner.log) == 2  # after 40 and 80 episodes
+    assert [share for share, _ in told] == [0.32, 0.64, 0.96, 1.0]
+    assert {right for _, right in told} == {1.0}
+    stored = sum(len(values) for values in learner.values)
+    assert 0 < stored <= 100 * episode.LENGTH
+    assert all((values > 0).all() for values in learner.values)  # each answer was right, so each step was worth +1
+
+
+@pytest.mark.parametrize("planted", [(LEFT, FORWARD, RIGHT), (FORWARD, RIGHT, FORWARD), (RIGHT, RIGHT, LEFT)])
+def test_the_search_finds_the_sequence_after_which_one_sees_where_one_is(planted):
+    """All views look alike but the one at the end of the planted way; all starts lie in the first three places."""
+    rng = np.random.default_rng(0)
+    first = rng.uniform((0.7, 0.7, 0.2), (1.3, 1.3, 0.8), (5, 3))
+    goals = first
+    for action in planted:
+        goals, _, _ = Glide().step(goals, np.full(len(goals), action), rng)
+
+    def score(poses):
+        there = np.isclose(poses[:, None], goals[None], atol=1e-6).all(2).any(1)
+        return np.where(there[:, None], knows(poses), 0.0)
+
+    told = []
+    found = best_sequence(Sense(score), Glide(), GRID, first, 0, length=3, progress=told.append)
+    reached = first
+    for action in found:
+        reached, _, _ = Glide().step(reached, np.full(len(reached), action), rng)
+    np.testing.assert_allclose(reached, goals, atol=1e-9)
+    if FORWARD in planted:
+        assert tuple(found) == planted
+    assert told == sorted(told)
+
+
+def test_senses_book_the_seconds_of_each_stage():
+    senses, robot, grid = home_of()
+    run(senses, robot, grid, planners.chance, senses.world.free_poses(3, np.random.default_rng(0)), 0)
+    assert senses.views == 3 * (1 + episode.LENGTH)
+    assert set(senses.seconds) == {"view", "graph", "GCN", "filter", "plan", "robot", "ranks"}
+    assert all(seconds >= 0 for seconds in senses.seconds.values())
+
+
+def test_a_look_around_is_the_looks_one_after_the_other():
+    senses, _, _ = home_of()
+    poses, told = senses.world.free_poses(10, np.random.default_rng(0)), []
+    around = senses.look_around(poses, np.random.default_rng(1), told.append, at_once=4)
+    at_once = senses.look(poses, np.random.default_rng(1))
+    for name in vars(at_once):
+        np.testing.assert_array_equal(getattr(around, name), getattr(at_once, name))
+    assert told == [0.4, 0.8, 1]
