@@ -31,7 +31,8 @@ class ParticleFilter:
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
         self.grid, self.rng = grid, rng
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
-        place = best[:, np.arange(M) % k]  # the k places share the particles evenly
+        # In k blocks, one a place: were they to take turns, equal steps along them would miss the same place each time.
+        place = best[:, np.arange(M) * k // M]
         low = grid.corner_of(place).astype(np.float32)
         spread = rng.random((M, 3), np.float32) * np.float32([grid.cell_m, grid.cell_m, 2 * np.pi / grid.n_bearings])
         self.x, self.y, self.theta = (low[..., i] + spread[:, i] for i in range(3))

@@ -118,13 +118,13 @@ def things_in_the_way(plan):
 
 
 def looks_by_room(plan):
-    """(type, {name: [sizes and colours of its pieces]}) of each room."""
+    """(type, {name: [sizes of its pieces]}) of each room."""
     for room in plan["rooms"]:
         looks = defaultdict(list)
         for thing in plan["objects"]:
             if covers(room["polygon"], *np.mean(thing["polygon"], 0)):
                 sides = np.hypot(*np.diff(thing["polygon"][:3], axis=0).T)
-                looks[thing["name"]].append((*sides, thing["height"], *thing["color"]))
+                looks[thing["name"]].append((*sides, thing["height"]))
         yield room["type"], looks
 
 
