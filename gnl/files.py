@@ -8,7 +8,6 @@ import io
 import json
 import os
 import tempfile
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -44,14 +43,26 @@ def save_arrays(path, made_by, **arrays):
 def load_arrays(path):
     """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError if it is none."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop("header").tobytes())
         version, made_by = header["format"], header["made_by"]
     except FileNotFoundError:
         raise ValueError(f"{path}: expected a file of arrays, found nothing") from None
-    except (OSError, ValueError, KeyError, TypeError, EOFError, AttributeError, zipfile.BadZipFile) as error:
-        raise ValueError(f"{path}: expected an .npz file of gnl, found something else ({error})") from None
+    except Exception as error:  # a damaged archive can fail in any of the layers below
+        reason = str(error).partition("\n")[0]
+        raise ValueError(f"{path}: expected an .npz file of gnl, found something else ({reason})") from None
     if version != FORMAT:
         raise ValueError(f"{path}: expected format version {FORMAT}, found {version}")
     return arrays, made_by
+
+
+def check_params(path, params, wanted):
+    """ValueError if the arrays of a file differ from those `wanted` in name, shape or being numbers."""
+    for name in wanted | params:
+        expected = wanted[name].shape if name in wanted else "nothing"
+        found = params[name].shape if name in params else "nothing"
+        if expected != found:
+            raise ValueError(f"{path}: {name}: expected shape {expected}, found {found}")
+        if not (np.issubdtype(params[name].dtype, np.floating) and np.isfinite(params[name]).all()):
+            raise ValueError(f"{path}: {name}: expected finite numbers, found {params[name].dtype}")

@@ -19,6 +19,7 @@ from .files import write_whole
 WALL_HEIGHT_M = 2.5
 DOOR_HEIGHT_M = 2.0
 LARGEST_HOME_M = 200.0
+HUGE = 1e9
 
 
 def load(path):
@@ -28,7 +29,7 @@ def load(path):
             plan = json.load(file)
     except OSError as error:
         raise ValueError(f"{path}: expected a floor plan, found no readable file ({error.strerror})") from None
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: expected JSON, found something else ({error})") from None
     return check(plan, path)
 
@@ -49,8 +50,8 @@ def check(plan, source="floor plan"):
         raise ValueError(f"{source}: {place}: expected {expected}, found {json.dumps(found)[:60]}")
 
     def number(value, place, at_least=-math.inf):
-        real = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-        if not (real and value >= at_least):
+        real = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not (real and abs(value) < HUGE and value >= at_least):  # NaN compares as false
             fail(place, "a number" if at_least == -math.inf else f"a number >= {at_least:g}", value)
 
     def numbers(value, count, place):

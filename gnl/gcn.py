@@ -13,7 +13,7 @@ normalised as in Kipf and Welling 2017).
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from .files import load_arrays, save_arrays
+from .files import check_params, load_arrays, save_arrays
 from .nn import Adam, linear_backward, linear_forward, relu_backward, relu_forward, softmax_cross_entropy
 from .scene_graph import N_WORDS
 
@@ -133,10 +133,9 @@ class GCN:
     def load(cls, path):
         """The network of a file of `save`, and what made it."""
         params, made_by = load_arrays(path)
-        wanted = ("W1", "b1", "W2", "b2", "W3", "b3")
-        if set(params) != set(wanted):
-            raise ValueError(f"{path}: expected the arrays {', '.join(wanted)}, found {', '.join(sorted(params))}")
-        gcn = cls(len(params["b3"]), n_words=len(params["W1"]), hidden=len(params["b1"]))
+        n_words, hidden = params["W1"].shape if np.ndim(params.get("W1")) == 2 else (1, 1)
+        gcn = cls(np.size(params.get("b3")), n_words=n_words, hidden=hidden)
+        check_params(path, params, gcn.params)
         gcn.params = params
         return gcn, made_by
 
@@ -146,9 +145,11 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
 
     graphs : SceneGraphs of n views; places (n,) int; progress(share done, loss) is called after each epoch
     """
-    if len(graphs) != len(places) or not len(places):
-        raise ValueError(f"places: expected one for each of the {len(graphs)} graphs, found {len(places)}")
     places = np.asarray(places)
+    if places.shape != (len(graphs),) or not len(places):
+        raise ValueError(f"places: expected one for each of the {len(graphs)} graphs, found shape {places.shape}")
+    if not 0 <= places.min() <= places.max() < gcn.n_places:
+        raise ValueError(f"places: expected 0..{gcn.n_places - 1}, found {places.min()}..{places.max()}")
     adam = Adam(gcn.params, rate)
     for epoch in range(epochs):
         order, losses = rng.permutation(len(places)), []

@@ -9,17 +9,16 @@ def cover_polygon(polygon):
     """Rectangles that together cover `polygon`, as rows (x, y, half length, half width, angle).
 
     A convex polygon gets its smallest rectangle. A concave one is cut along the line through one of its inner
-    corners, the best one, as long as the pieces' rectangles are clearly smaller than the whole's.
+    corners, the best one, and its pieces likewise, if their rectangles are clearly smaller than the whole's.
     """
     polygon = np.asarray(polygon, float)
     whole = smallest_rectangle(polygon)
-    best, area = [whole], WORTH_CUTTING * _area(whole)
-    for i in _inner_corners(polygon):
-        pieces = _cut(polygon, i)
-        if pieces and sum(_area(smallest_rectangle(piece)) for piece in pieces) < area:
-            boxes = [box for piece in pieces for box in cover_polygon(piece)]
-            best, area = boxes, sum(map(_area, boxes))
-    return best
+    cuts = [cut for cut in (_cut(polygon, i) for i in _inner_corners(polygon)) if cut]
+    if not cuts:
+        return [whole]
+    best = min(cuts, key=lambda pieces: sum(_area(smallest_rectangle(piece)) for piece in pieces))
+    boxes = [box for piece in best for box in cover_polygon(piece)]
+    return boxes if sum(map(_area, boxes)) < WORTH_CUTTING * _area(whole) else [whole]
 
 
 def smallest_rectangle(points):
@@ -65,7 +64,6 @@ def _cut(polygon, i):
             if t > 1e-9 and -1e-9 <= u <= 1 + 1e-9:
                 hits.append((t, j, P[0] + t * d))
     if not hits:
-        return None
+        return ()
     _, j, X = min(hits, key=lambda hit: hit[0])
-    pieces = np.vstack([P[:j + 1], X]), np.vstack([P[0], X, P[j + 1:]])
-    return pieces if min(len(piece) for piece in pieces) < n + 1 else None
+    return np.vstack([P[:j + 1], X]), np.vstack([P[0], X, P[j + 1:]])

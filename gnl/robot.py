@@ -34,13 +34,14 @@ class Robot:
     """A home's obstacles in a pymunk space, and a disc that moves among them."""
 
     def __init__(self, world, motion=Motion(), radius_m=ROBOT_RADIUS_M):  # noqa: B008 (frozen)
-        self.motion, self.radius_m = motion, radius_m
+        self.motion = motion
         self.space = pymunk.Space()
         for (x, y), (a, b), angle in zip(world.centre[world.blocks], world.half[world.blocks],
                                          world.angle[world.blocks], strict=True):
             turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
             corners = [(a, b), (-a, b), (-a, -b), (a, -b)]
-            self.space.add(pymunk.Poly(self.space.static_body, corners, turn))
+            # The obstacle gets the robot's radius: a thick query is not searched for beyond the bounds of a thin shape.
+            self.space.add(pymunk.Poly(self.space.static_body, corners, turn, radius_m))
 
     def step(self, poses, actions, rng):
         """Act once with each robot: poses (B, 3), actions (B,) -> poses (B, 3), odometry (B, 2), bumped (B,) bool.
@@ -64,7 +65,7 @@ class Robot:
         x, y, theta = pose
         reach = distance_m + SKIN_M
         target = (x + reach * np.cos(theta), y + reach * np.sin(theta))
-        hit = self.space.segment_query_first((x, y), target, self.radius_m, pymunk.ShapeFilter())
+        hit = self.space.segment_query_first((x, y), target, 0, pymunk.ShapeFilter())
         if hit is None:
             return distance_m, False
         return max(0.0, hit.alpha * reach - SKIN_M), True

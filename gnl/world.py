@@ -23,6 +23,7 @@ LEAF_THICKNESS_M = 0.04
 THINNEST_M = 0.01  # a picture without depth still has two sides
 ROBOT_RADIUS_M = 0.2
 ROBOT_HEIGHT_M = 1.35  # the camera's 1.25 m and a little more: what hangs higher is no obstacle
+LEAST_FREE = 1e-3  # share of a home's bounds; with less there is no use in drawing on
 STEP_M = 0.05  # what is flatter is driven over: a carpet
 
 # Colours by class, for what bears none of its own: a mean, how far objects stray from it in brightness, and in hue.
@@ -89,14 +90,14 @@ class World:
 
     def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
         """n poses uniform over the free space that hangs together, bearings uniform: (n, 3)."""
-        reachable = self.free_space.largest_room(radius_m)
-        if not reachable.any():
-            raise ValueError(f"{self.name}: expected free space for a disc of {radius_m:g} m, found none")
-        poses = np.empty((0, 3))
-        while len(poses) < n:  # every draw hits with the share of free space in the bounds, which is not zero
-            draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 64, 3))
+        reachable, poses, drawn = self.free_space.largest_room(radius_m), np.empty((0, 3)), 0
+        while len(poses) < n:
+            draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 1000, 3))
             good = self.free_space.look_up(reachable, draw[:, :2]) & self.is_free(draw[:, :2], radius_m)
-            poses = np.vstack([poses, draw[good]])
+            poses, drawn = np.vstack([poses, draw[good]]), drawn + len(draw)
+            if len(poses) < LEAST_FREE * drawn:
+                raise ValueError(f"{self.name}: expected free space for a disc of {radius_m:g} m, "
+                                 f"found {len(poses)} free among {drawn} points")
         return poses[:n]
 
     def _carries(self):

@@ -154,6 +154,11 @@ def test_what_is_no_file_of_ours_is_refused_in_one_line(tmp_path, make):
     assert "\n" not in line
 
 
+def test_no_file_is_called_nothing(tmp_path):
+    with pytest.raises(ValueError, match="expected a file of arrays, found nothing"):
+        load_arrays(tmp_path / "file.npz")
+
+
 def test_another_version_is_named(tmp_path):
     other_version(tmp_path / "file.npz")
     with pytest.raises(ValueError, match=f"expected format version {FORMAT}, found {FORMAT + 1}"):

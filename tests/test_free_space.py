@@ -5,7 +5,7 @@ import pymunk
 import pytest
 from conftest import room, thing
 
-from gnl.free_space import GATE_M, RASTER_M, FreeSpace, box_distance
+from gnl.free_space import RASTER_M, FreeSpace, box_distance
 from gnl.world import World
 
 
@@ -64,8 +64,8 @@ def test_a_ball_stays_out_of_a_narrow_gap_and_rolls_in_by_a_wide_one():
         """Two rooms side by side; the left one is open to the west."""
         return walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (3, 0, 3, 4),
                       (0, 0, 0, 2 - width / 2), (0, 2 + width / 2, 0, 4))
-    assert with_gap(2 * GATE_M - 0.2).inside([[1.5, 2], [4.5, 2]]).tolist() == [True, True]
-    assert with_gap(2 * GATE_M + 0.3).inside([[1.5, 2], [4.5, 2]]).tolist() == [False, True]
+    assert with_gap(1.0).inside([[1.5, 2], [4.5, 2]]).tolist() == [True, True]
+    assert with_gap(1.5).inside([[1.5, 2], [4.5, 2]]).tolist() == [False, True]
 
 
 def test_a_home_without_a_side_is_inside_up_to_its_bounds():

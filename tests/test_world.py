@@ -213,8 +213,29 @@ def test_free_poses_come_from_the_generator_alone(two_rooms):
 
 def test_a_home_without_free_space_is_refused():
     full = World(room(thing("bed", 3, 2, 5.9, 3.9, 0.5), name="full"))
-    with pytest.raises(ValueError, match=r"full: expected free space for a disc of 0.2 m, found none"):
+    with pytest.raises(ValueError, match=r"full: expected free space for a disc of 0.2 m, found 0 free among"):
         full.free_poses(1, np.random.default_rng(0))
+
+
+class Impatient:
+    """A generator that draws a million times and no more."""
+
+    def __init__(self):
+        self.rng, self.left = np.random.default_rng(0), 1e6
+
+    def __getattr__(self, name):
+        self.left -= 100
+        assert self.left > 0, "still drawing"
+        return getattr(self.rng, name)
+
+
+def test_a_home_with_a_hole_just_too_small_is_refused_in_the_end():
+    # By the raster of 5 cm a disc of 40 cm fits between the beds; by their outlines it does not.
+    beds = [thing("bed", 1.5 + 0.695 * np.cos(a), 1.5 + 0.695 * np.sin(a), 1.0, 3.0, 0.5, angle=a)
+            for a in 0.5 + np.arange(4) * np.pi / 2]
+    rims = [thing("bed", x, y, 0.6, 0.6, 0.5) for x in (0.3, 2.7) for y in (0.3, 2.7)]
+    with pytest.raises(ValueError, match="expected free space"):
+        World(room(*beds, *rims, size=(3.0, 3.0))).free_poses(1, Impatient())
 
 
 def test_a_thing_bears_the_colour_that_the_plan_gives_it_and_its_neighbours_keep_theirs():
