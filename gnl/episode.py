@@ -101,6 +101,7 @@ def run(senses, robot, grid, plan, starts, seed, length=LENGTH, learner=None, wa
             kept["actions"].append(actions)
         seen, states = states if step else None, senses.timed("ranks", reciprocal_ranks, scores)
         pooled = senses.timed("filter", belief.belief, grid.n_places)
+        # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
         places, answers = grid.place_of(poses), pooled.argmax(1)
         if learner and step:
             # CHOICE: the reward comes after every step; the text also calls it sparse.

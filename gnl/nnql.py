@@ -41,12 +41,11 @@ class NNQL:
         return np.stack([self._recall(states, a)[0] for a in range(len(self.index))], 1)
 
     def learn(self, states, actions, rewards, next_states, done):
-        """Equation 2 for B transitions; a pair met for the first time is stored with the value that (2) gives it.
+        """Equation 2 for B transitions; states, next_states (B, K), actions (B,), rewards (B,).
 
-        states, next_states (B, K), actions (B,), rewards (B,), done (B,) bool: nothing comes after
-
-        # CHOICE: what B robots side by side live through in one step is learned at once, from one and the same Q.
+        done : (B,) bool, nothing comes after
         """
+        # DIFFERS: what robots side by side live through in one step is learned at once, from one and the same Q.
         ahead = np.where(done, 0.0, self.q_values(next_states).max(1))
         target = rewards + self.gamma * ahead
         for a in range(len(self.index)):
@@ -56,17 +55,19 @@ class NNQL:
 
     def _learn(self, states, a, target):
         q, known = self._recall(states, a)
-        new, values = {}, self.values[a].tolist()
+        values, born, births = self.values[a], {}, []  # births: values of the pairs that this step adds
         for i, state in enumerate(states):
-            # Two robots may meet one new state in the same step: the second finds it stored.
-            pair = known[i] if known[i] >= 0 else new.setdefault(state.tobytes(), len(values))
-            if pair == len(values):
-                values.append(q[i])
-                new[state.tobytes()] = pair
-            values[pair] += self.alpha * (target[i] - values[pair])
-        self.values[a] = np.array(values)
-        if new:
-            self.index[a].add(np.stack([np.frombuffer(key, states.dtype) for key in new]))
+            if known[i] >= 0:
+                values[known[i]] += self.alpha * (target[i] - values[known[i]])
+                continue
+            # CHOICE: a new pair is stored with Q + alpha (target - Q), Q the mean of its neighbours, 0 without any.
+            pair = born.setdefault(state.tobytes(), len(births))  # the second robot to meet it finds it there
+            if pair == len(births):
+                births.append(q[i])
+            births[pair] += self.alpha * (target[i] - births[pair])
+        if births:
+            self.values[a] = np.append(values, births)
+            self.index[a].add(np.stack([np.frombuffer(key, states.dtype) for key in born]))
 
     def _recall(self, states, a):
         """Q of (state, a) for each state (B,), and the stored pair that it is, or -1 (B,)."""

@@ -44,7 +44,8 @@ def explore(nnql, epsilon):
 
 
 def best_actions(q, rng):
-    """Arg max over actions, ties drawn: q (B, A) -> (B,)."""
+    """Arg max over actions: q (B, A) -> (B,)."""
+    # CHOICE: equal values are drawn among; always taking the first would make a scan of turning left.
     return np.where(q == q.max(1, keepdims=True), rng.random(q.shape), -1).argmax(1)
 
 

@@ -175,6 +175,15 @@ def test_what_lies_before_an_open_front_door_is_not_inside():
     assert (poses[:, 0] > -0.3).all()
 
 
+def test_a_front_door_through_which_a_ball_would_fit_is_shut_to_it():
+    world = World(front_door(width=1.8, state="open"))
+    assert world.free_space.inside([[3, 2], [5.5, 3.5], [-1.5, 2]]).tolist() == [True, True, False]
+
+
+def test_outside_nothing_is_free():
+    assert World(room()).is_free([[3, 2], [-1.5, 2], [3, 5.5], [300, 2]]).tolist() == [True, False, False, False]
+
+
 def test_low_hanging_and_standing_things_block_flat_and_high_ones_do_not():
     world = World(room(thing("table", 1, 1, 0.5, 0.5, 0.7), thing("other", 2, 1, 0.5, 0.5, 0.02),
                        thing("other", 3, 1, 0.5, 0.5, 0.3, z0=ROBOT_HEIGHT_M + 0.05),
