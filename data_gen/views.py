@@ -8,6 +8,7 @@ import numpy as np
 
 from gnl.camera import render
 from gnl.classes import N_CLASSES
+from gnl.photo import check_noise
 from gnl.segnet import SIZE_PX
 
 from .rooms import make_home
@@ -25,6 +26,9 @@ def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
         raise ValueError(f"homes: expected 1..{FIRST_WORLD_SEED}, found {n_homes}")
     if n_views < 1:
         raise ValueError(f"views: expected at least 1, found {n_views}")
+    if seed < 0:
+        raise ValueError(f"seed: expected at least 0, found {seed}")
+    check_noise(noise)
     rng, rgb, labels = np.random.default_rng(seed), [], []
     for home in range(n_homes):
         wanted = n_views * (home + 1) // n_homes - n_views * home // n_homes

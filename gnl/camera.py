@@ -13,12 +13,13 @@ import numpy as np
 
 from .classes import CEILING, FLOOR
 from .photo import photograph
-from .strip import FIELD_OF_VIEW_RAD, FRONT, NEAREST_M, TOP, UNDERSIDE, cast
+from .strip import FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
 
 HEIGHT_M = 1.25  # CHOICE: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
-MOST_SURFACES = 62  # of one column, one bit each; what lies behind the 62 nearest is not drawn
-CHUNK_RAYS = 2048  # rays cast at once: as many as stay in the cache
+MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
+CEILING_BIT, FLOOR_BIT = MOST_SURFACES, MOST_SURFACES + 1
+RAYS_AT_ONCE, RAYS_OF_PHOTO = 4096, 1024  # as many as stay near the processor; a photograph needs much room for each
 
 
 @dataclass(frozen=True)
@@ -31,15 +32,14 @@ class Surfaces:
 
     ray: np.ndarray  # (S,) int, view * C + column
     box: np.ndarray  # (S,) int; N for a ceiling, N + 1 for a floor
-    kind: np.ndarray  # (S,) FRONT, TOP or UNDERSIDE
-    w: np.ndarray  # (S,) inverse depth of a front
+    face: np.ndarray  # (S,) one of the four sides, TOP or UNDERSIDE
+    w: np.ndarray  # (S,) inverse depth of a side
     run_surface: np.ndarray  # (R,) int
     run_length: np.ndarray  # (R,) int, pixels
 
     def paint(self, of_surface, size):
-        """Spread values of surfaces, (S,) or (S, F), over all pixels, column by column: (B, C, H) or (B, C, H, F)."""
-        pixels = np.repeat(of_surface[self.run_surface], self.run_length, axis=0)
-        return pixels.reshape(-1, size, size, *of_surface.shape[1:])
+        """Spread values of surfaces (S,) over all pixels, column by column: (B, C, H)."""
+        return np.repeat(of_surface[self.run_surface], self.run_length).reshape(-1, size, size)
 
 
 def render(world, poses, rng, size=SIZE_PX, noise=1.0):
@@ -51,10 +51,10 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0):
     poses = np.asarray(poses, float)
     rgb = np.empty((len(poses), size, size, 3), np.uint8)
     labels = np.empty((len(poses), size, size), np.uint8)
-    for part in _chunks(len(poses), size):
+    for part in _chunks(len(poses), RAYS_OF_PHOTO // size):
         surfaces = look(world, poses[part], size)
         labels[part] = _labels(world, surfaces, size)
-        rgb[part] = photograph(world, poses[part], surfaces, size, HEIGHT_M, rng, noise).transpose(0, 2, 1, 3)
+        rgb[part] = photograph(world, poses[part], surfaces, size, HEIGHT_M, rng, noise)
     return rgb, labels
 
 
@@ -62,7 +62,7 @@ def true_labels(world, poses, size=SIZE_PX):
     """True labels alone: poses (B, 3) -> (B, H, H) uint8."""
     poses = np.asarray(poses, float)
     columns = np.empty((len(poses), size, size), np.uint8)  # an image as it is painted, column by column
-    for part in _chunks(len(poses), size):
+    for part in _chunks(len(poses), RAYS_AT_ONCE // size):
         columns[part] = _labels(world, look(world, poses[part], size), size).transpose(0, 2, 1)
     return columns.transpose(0, 2, 1)
 
@@ -80,57 +80,61 @@ def row_of(z, w, size):
 
 
 def _pile(world, strip, size):
-    """Surfaces of each ray, near to far: (ray, box, kind, w, first row, end row), those without a pixel left out."""
-    z0, z1 = world.z[strip.box].T
+    """Surfaces of each ray, near to far: (ray, box, face, w, first row, end row), those without a pixel left out."""
+    z0, z1 = (z[strip.box] for z in world.z.T)
     top, foot = row_of(z1, strip.w_in, size), row_of(z0, strip.w_in, size)
     capped = np.flatnonzero((z1 < HEIGHT_M) | (z0 > HEIGHT_M))
-    kind = np.where(z1[capped] < HEIGHT_M, TOP, UNDERSIDE)
-    back = row_of(np.where(kind == TOP, z1[capped], z0[capped]), strip.w_out[capped], size)
+    from_above = z1[capped] < HEIGHT_M
+    back = row_of(np.where(from_above, z1[capped], z0[capped]), strip.w_out[capped], size)
 
-    begin = np.concatenate([top, np.where(kind == TOP, back, foot[capped])])
-    end = np.concatenate([foot, np.where(kind == TOP, top[capped], back)])
-    begin, end = (np.ceil(y - 0.5).clip(0, size).astype(np.int64) for y in (begin, end))
-    kind = np.concatenate([np.zeros(len(top), int), kind])
+    begin = np.concatenate([top, np.where(from_above, back, foot[capped])])
+    end = np.concatenate([foot, np.where(from_above, top[capped], back)])
+    begin, end = (np.ceil(y - 0.5).clip(0, size).astype(int) for y in (begin, end))
+    face = np.concatenate([strip.side, np.where(from_above, TOP, UNDERSIDE)])
     crossing = np.concatenate([np.arange(len(top)), capped])
 
     shown = np.flatnonzero(end > begin)
-    crossing, kind = crossing[shown], kind[shown]
+    crossing, face = crossing[shown], face[shown]
     # A top belongs right behind its front; but what stands on it comes between the two.
-    late = (kind != FRONT) & world.carries[strip.box[crossing]]
-    nearness = np.where(late, strip.w_out[crossing], strip.w_in[crossing] - 1e-9 * kind)
-    order = np.argsort(strip.ray[crossing] - nearness * (NEAREST_M / 2))
+    late = (face >= TOP) & world.carries[strip.box[crossing]]
+    nearness = np.where(late, strip.w_out[crossing], strip.w_in[crossing])
+    # Sorting numbers of which the last digits are the place in the list is faster than asking for the order.
+    far = ((1 - nearness * NEAREST_M) * 2 ** 30).astype(int)
+    bits = len(shown).bit_length()
+    order = np.sort(((strip.ray[crossing] << 31) + far << bits) + np.arange(len(shown))) & (1 << bits) - 1
     crossing, shown = crossing[order], shown[order]
-    return strip.ray[crossing], strip.box[crossing], kind[order], strip.w_in[crossing], begin[shown], end[shown]
+    return strip.ray[crossing], strip.box[crossing], face[order], strip.w_in[crossing], begin[shown], end[shown]
 
 
 def _visible(pile, n_rays, size, n_boxes):
     """Runs of the nearest surface in each column, from piles sorted near to far.
 
     Each surface of a column owns one bit, the nearest the lowest. Its first row switches the bit on, its end row
-    off; between two such edges one sees the lowest bit that is on.
+    off; between two such edges one sees the lowest bit that is on. The two highest are those of ceiling and floor:
+    they change places where a column begins and at half its height.
     """
-    ray, box, kind, w, begin, end = pile
+    ray, box, face, w, begin, end = pile
     S, H, column = len(ray), size, np.arange(n_rays)
     first = np.searchsorted(ray, column)  # of each ray's surfaces
     bit = np.arange(S) - first[ray]
     if S and bit.max() >= MOST_SURFACES:
         return _visible([a[bit < MOST_SURFACES] for a in pile], n_rays, size, n_boxes)
 
-    none = 63  # the ceiling begins with each column, the floor at half its height; they own no bit
-    pixel = np.concatenate([ray * H + begin, ray * H + end, column * H, column * H + H // 2])
-    edge = np.sort(pixel * 64 + np.concatenate([bit, bit, np.full(2 * n_rays, none)]))  # one sort moves both
-    pixel, bit = edge >> 6, edge & 63
-    on = np.bitwise_xor.accumulate(np.where(bit == none, 0, np.left_shift(1, bit)))
-    length = np.diff(pixel, append=n_rays * H)
+    both = 63  # stands for the bits of ceiling and floor together
+    mask = np.append(1 << np.arange(63), 1 << CEILING_BIT | 1 << FLOOR_BIT)
+    top, start = column * (H * 64) + both, ray * (H * 64) + bit
+    edge = np.sort(np.concatenate([start + begin * 64, start + end * 64, top, top + H // 2 * 64]))
+    pixel = edge >> 6
+    on = np.bitwise_xor.accumulate(mask[edge & 63]) ^ 1 << FLOOR_BIT
+    length = np.append(pixel[1:], n_rays * H) - pixel
     run = np.flatnonzero(length)
-    pixel, on = pixel[run], on[run]
+    on, ray_of_run = on[run], pixel[run] // H
     lowest = np.frexp((on & -on).astype(float))[1] - 1
-    ray_of_run, row = np.divmod(pixel, H)
-    background = S + ray_of_run + np.where(row < H // 2, 0, n_rays)
-    surface = np.where(on == 0, background, first[ray_of_run] + lowest)
+    background = S + ray_of_run + np.where(lowest == FLOOR_BIT, n_rays, 0)
+    surface = np.where(lowest >= CEILING_BIT, background, first[ray_of_run] + lowest)
     return Surfaces(np.concatenate([ray, column, column]),
                     np.concatenate([box, np.full(n_rays, n_boxes), np.full(n_rays, n_boxes + 1)]),
-                    np.concatenate([kind, np.full(n_rays, UNDERSIDE), np.full(n_rays, TOP)]),
+                    np.concatenate([face, np.full(n_rays, UNDERSIDE), np.full(n_rays, TOP)]),
                     np.concatenate([w, np.ones(2 * n_rays)]), surface, length[run])
 
 
@@ -139,6 +143,6 @@ def _labels(world, surfaces, size):
     return surfaces.paint(of_box[surfaces.box], size).transpose(0, 2, 1)
 
 
-def _chunks(n_views, size):
-    step = max(1, CHUNK_RAYS // size)
+def _chunks(n_views, at_once):
+    step = max(1, at_once)
     return [slice(i, min(i + step, n_views)) for i in range(0, n_views, step)]

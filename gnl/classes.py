@@ -12,7 +12,7 @@ N_CLASSES = len(CLASSES)
 # One colour a class, the same in every picture, distinct for colour-blind eyes too (after Okabe and Ito 2008,
 # with three greys for the shell of a room).
 PALETTE = np.array([
-    [200, 200, 200], [120, 110, 100], [240, 238, 232], [0, 114, 178], [230, 159, 0],
+    [200, 200, 200], [92, 82, 74], [240, 238, 232], [0, 114, 178], [230, 159, 0],
     [0, 158, 115], [204, 121, 167], [86, 180, 233], [20, 20, 20], [240, 228, 66],
 ], np.uint8)
 

@@ -9,6 +9,7 @@ from . import draw, episode, gcn, learned, planners, replay, segnet
 from .camera import render
 from .compare import paired_difference
 from .files import load_arrays
+from .photo import check_noise
 from .places import PlaceGrid
 from .ranks import reciprocal_ranks
 from .robot import ACTIONS, Robot
@@ -61,9 +62,8 @@ def play(args, scale, helper):
           f"{grid.n_places} places ({grid.nx} x {grid.ny} cells x {grid.n_bearings} bearings)")
 
     stage = Stage("net")
-    views, views_made_by = load_arrays(args.views)
-    net = learned.segmentation_net(parts, (views["rgb"], views["labels"]), views_made_by, scale.net_epochs,
-                                   args.seed, stage)
+    views, views_made_by = load_views(args.views)
+    net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
     seen, true = render(world, world.free_poses(200, rng(args, 1)), rng(args, 2), segnet.SIZE_PX, args.noise)
     right, overlap = segnet.accuracy(segnet.predict(net, seen), true)
     stage.done(f"segmentation of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
@@ -73,7 +73,8 @@ def play(args, scale, helper):
     settings = {"plan": learned.digest(world.plan), "noise": args.noise,
                 "net": learned.digest([views_made_by, scale.net_epochs, args.seed])}
     how = {"epochs": scale.gcn_epochs, "batch": scale.gcn_batch, "rate": gcn.RATE * scale.gcn_batch / 16}
-    senses.gcn = learned.place_classifier(parts, senses, grid, scale.gcn_views, args.seed, settings, helper, stage, **how)
+    senses.gcn = learned.place_classifier(parts, senses, grid, scale.gcn_views, args.seed, settings, helper, stage,
+                                          **how)
     poses = world.free_poses(500, rng(args, 3))
     first, third = learned.top_places(senses.gcn, senses.look_around(poses, rng(args, 4)), grid.place_of(poses))
     stage.done(f"place from one new view: right {first:.0%}, among the first three {third:.0%}")
@@ -112,8 +113,19 @@ def check(args):
         least = 0 if name == "seed" else 2 if name == "tests" else 1
         if getattr(args, name) < least:
             raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
-    if not 0 <= args.noise <= 10:
-        raise ValueError(f"--noise: expected 0..10, found {args.noise}")
+    check_noise(args.noise, "--noise")
+
+
+def load_views(path):
+    """Training views (rgb, labels) of a file of `python -m data_gen views`, and what made them."""
+    arrays, made_by = load_arrays(path)
+    rgb, labels = arrays.get("rgb", np.empty(0)), arrays.get("labels", np.empty(0))
+    size = segnet.SIZE_PX
+    if not (rgb.shape == (len(labels), size, size, 3) and labels.shape == (len(rgb), size, size)
+            and rgb.dtype == labels.dtype == np.uint8 and len(rgb)):
+        raise ValueError(f"{path}: expected rgb (n, {size}, {size}, 3) and labels (n, {size}, {size}) of bytes, "
+                         f"found {', '.join(f'{name} {a.shape}' for name, a in arrays.items())}")
+    return (rgb, labels), made_by
 
 
 def rng(args, stream):
@@ -136,8 +148,8 @@ def print_table(records):
 def print_costs(senses):
     """Milliseconds a view of each stage, episodes side by side."""
     cost = {stage: 1000 * seconds / senses.views for stage, seconds in senses.seconds.items()}
-    print("ms a view: " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
-    print(f"           {sum(cost.values()):.2f} in all; the paper: graph 18, GCN 0.10, planning 10")
+    print(f"a view costs {sum(cost.values()):.1f} ms (the paper's: graph 18, GCN 0.10, planning 10 ms):")
+    print("  " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
 
 
 def draw_stages(folder, world, grid, senses, starts, stream):

@@ -89,17 +89,17 @@ def run(senses, robot, grid, plan, starts, seed, length=LENGTH, learner=None, wa
     poses, B = np.array(starts, float), len(starts)
     scores = senses.scores(poses, appearance)
     belief = senses.timed("filter", ParticleFilter, grid, likelihood(scores), filtering)
-    kept = {"poses": [], "actions": [], "answers": [], "places": [], "belief": []}
+    kept, states = {"poses": [], "actions": [], "answers": [], "places": [], "belief": []}, None
     for step in range(length + 1):
         if step:
-            actions = senses.timed("plan", plan, step - 1, states, exploring)  # noqa: F821 (set in the first pass)
+            actions = senses.timed("plan", plan, step - 1, states, exploring)
             if actions is None:
                 break
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
             scores = senses.scores(poses, appearance)
             senses.timed("filter", _update, belief, odometry, likelihood(scores))
             kept["actions"].append(actions)
-        seen, states = states if step else None, senses.timed("ranks", reciprocal_ranks, scores)
+        seen, states = states, senses.timed("ranks", reciprocal_ranks, scores)
         pooled = senses.timed("filter", belief.belief, grid.n_places)
         # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
         places, answers = grid.place_of(poses), pooled.argmax(1)

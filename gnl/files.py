@@ -8,6 +8,7 @@ import io
 import json
 import os
 import tempfile
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -43,12 +44,12 @@ def save_arrays(path, made_by, **arrays):
 def load_arrays(path):
     """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError if it is none."""
     try:
+        if not zipfile.is_zipfile(path):
+            raise ValueError("no archive" if Path(path).exists() else "nothing")
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop("header").tobytes())
         version, made_by = header["format"], header["made_by"]
-    except FileNotFoundError:
-        raise ValueError(f"{path}: expected a file of arrays, found nothing") from None
     except Exception as error:  # a damaged archive can fail in any of the layers below
         reason = str(error).partition("\n")[0]
         raise ValueError(f"{path}: expected an .npz file of gnl, found something else ({reason})") from None

@@ -39,9 +39,9 @@ class FreeSpace:
 
     def largest_room(self, radius_m):
         """The largest connected region in which a disc may stand, as a raster of bool."""
-        regions, n = ndimage.label(self._inside & (self.clearance > radius_m))
+        regions, _ = ndimage.label(self._inside & (self.clearance > radius_m))
         sizes = np.bincount(regions.ravel(), minlength=2)
-        return regions == 1 + sizes[1:].argmax() if n else np.zeros(self.shape, bool)
+        return regions == 1 + sizes[1:].argmax()
 
     def look_up(self, raster, xy):
         """Values of `raster` at points (n, 2); False beyond its rim."""

@@ -31,11 +31,12 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     i, j = edges.T
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
+    rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)
     degree = np.bincount(rows, minlength=n_nodes)
-    order = np.argsort(rows * n_nodes + columns)
-    rows, columns = rows[order], columns[order]
-    values = (1 / np.sqrt(degree[rows] * degree[columns])).astype(dtype)
-    return csr_matrix((values, columns, np.append(0, np.cumsum(degree))), (n_nodes, n_nodes))
+    scale = (1 / np.sqrt(degree)).astype(dtype)
+    ends = np.append(0, np.cumsum(degree))
+    columns, ends = columns.astype(np.int32), ends.astype(np.int32)  # scipy would look through them all to do it
+    return csr_matrix((scale[rows] * scale[columns], columns, ends), (n_nodes, n_nodes))
 
 
 def graph_convolution_forward(node_features, adjacency, weight, bias):

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from . import draw
 from .classes import CLASSES, N_CLASSES, from_ade20k
@@ -39,13 +39,13 @@ def load(path, ade20k=False):
     try:
         with Image.open(path) as image:
             image.load()
-            if image.mode not in ("L", "P", "I", "I;16", "1"):
-                raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
-            labels = np.array(image).astype(int)
     except FileNotFoundError:
         raise ValueError(f"{path}: expected a label image, found nothing") from None
-    except (UnidentifiedImageError, OSError) as error:
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:  # what Pillow says of a bad file
         raise ValueError(f"{path}: expected an image, found something else ({error})") from None
+    if image.mode not in ("L", "P", "I", "I;16", "1"):
+        raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
+    labels = np.array(image).astype(int)
     highest = 150 if ade20k else N_CLASSES - 1
     if labels.min() < 0 or labels.max() > highest:
         hint = "" if ade20k or labels.max() > 150 else "; --ade20k for indices of ADE20K"

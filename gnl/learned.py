@@ -90,6 +90,8 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings):
 
     def load(path):
         arrays, made_by = load_arrays(path)
+        if list(arrays) != ["sequence"]:
+            raise ValueError(f"{path}: expected an action sequence, found {', '.join(sorted(arrays))}")
         return arrays["sequence"], made_by
 
     return kept(folder, "scan", settings, load, learn)

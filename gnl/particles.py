@@ -32,7 +32,7 @@ class ParticleFilter:
         self.grid, self.rng = grid, rng
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
         # In k blocks, one a place: were they to take turns, equal steps along them would miss the same place each time.
-        place = best[:, np.arange(M) * k // M]
+        place = best.take(np.arange(M) * k // M, 1)
         low = grid.corner_of(place).astype(np.float32)
         spread = rng.random((M, 3), np.float32) * np.float32([grid.cell_m, grid.cell_m, 2 * np.pi / grid.n_bearings])
         self.x, self.y, self.theta = (low[..., i] + spread[:, i] for i in range(3))
@@ -41,34 +41,35 @@ class ParticleFilter:
 
     def predict(self, odometry):
         """Move all particles as odometry says, (B, 2) forward [m] and turn [rad], and spread them by its noise."""
-        forward, turn = np.asarray(odometry, np.float32).T[..., None]
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
         noise *= np.float32([[STD_M], [STD_M], [STD_RAD]])
-        self.x += forward * np.cos(self.theta) + noise[0]
-        self.y += forward * np.sin(self.theta) + noise[1]
-        self.theta += turn + noise[2]
+        # One filter at a time, here and below: its particles stay near the processor.
+        for b, (forward, turn) in enumerate(np.asarray(odometry, np.float32)):
+            self.x[b] += forward * np.cos(self.theta[b]) + noise[0]
+            self.y[b] += forward * np.sin(self.theta[b]) + noise[1]
+            self.theta[b] += turn + noise[2]
 
     def weigh(self, likelihood):
         """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them."""
-        B, K = likelihood.shape
-        self.place = self.grid.place_of_xyt(self.x, self.y, self.theta)
-        flat = self.place + K * np.arange(B)[:, None]
-        weight = self.weight * likelihood.astype(np.float32).ravel()[flat]
-        total = weight.sum(1, keepdims=True)
-        # A view that no particle can explain says nothing about which of them is right.
-        self.weight = np.where(total > 0, weight / np.where(total > 0, total, 1), self.weight)
+        self.place = np.empty(self.x.shape, int)
+        for b, of_place in enumerate(np.asarray(likelihood, np.float32)):
+            self.place[b] = self.grid.place_of_xyt(self.x[b], self.y[b], self.theta[b])
+            weight = self.weight[b] * of_place[self.place[b]]
+            total = weight.sum()
+            if total > 0:  # a view that no particle can explain says nothing about which of them is right
+                self.weight[b] = weight / total
 
     def belief(self, n_places, pooling="sum"):
         """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max")."""
-        B = len(self.weight)
-        flat = (self.place + n_places * np.arange(B)[:, None]).ravel()
-        if pooling == "sum":
-            return np.bincount(flat, self.weight.ravel(), B * n_places).reshape(B, n_places)
-        if pooling != "max":
+        if pooling not in ("sum", "max"):
             raise ValueError(f'pooling: expected "sum" or "max", found {pooling!r}')
-        greatest = np.zeros(B * n_places)
-        np.maximum.at(greatest, flat, self.weight.ravel())
-        return greatest.reshape(B, n_places)
+        pooled = np.zeros((len(self.weight), n_places))
+        for b, (place, weight) in enumerate(zip(self.place, self.weight, strict=True)):
+            if pooling == "sum":
+                pooled[b] = np.bincount(place, weight.astype(float), n_places)
+            else:
+                np.maximum.at(pooled[b], place, weight)
+        return pooled
 
     def resample(self):
         """Draw M particles of equal weight: particle i gets floor or ceil of M weight_i copies, on average exactly.
@@ -77,13 +78,14 @@ class ParticleFilter:
         M weight up to i - 1 and up to i.
         """
         B, M = self.weight.shape
-        total = np.cumsum(self.weight, 1, dtype=np.float64)
-        total *= M / total[:, -1:]
-        mark = np.ceil(total - self.rng.random((B, 1))).astype(int)
-        mark[:, -1] = M  # rounding must not lose the last one
-        copies = np.diff(mark, axis=1, prepend=0).ravel()
-        for name in ("x", "y", "theta", "place"):
-            setattr(self, name, np.repeat(getattr(self, name).ravel(), copies).reshape(B, M))
+        start = self.rng.random(B)
+        for b in range(B):
+            total = np.cumsum(self.weight[b], dtype=np.float64)
+            mark = np.ceil(total * (M / total[-1]) - start[b]).astype(int)
+            mark[-1] = M  # rounding must not lose the last one
+            drawn = np.repeat(np.arange(M), mark - np.append(0, mark[:-1]))
+            for of_particle in (self.x, self.y, self.theta, self.place):
+                of_particle[b] = of_particle[b][drawn]
         self.weight = np.full((B, M), 1 / M, np.float32)
 
     def fork(self, n):

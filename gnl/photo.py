@@ -9,80 +9,106 @@ the sensor change it further. One dial, `noise`, scales all that a clean drawing
 import numpy as np
 
 from .classes import CEILING, FLOOR
-from .strip import FIELD_OF_VIEW_RAD, FRONT, TOP, slopes
+from .strip import TOP, UNDERSIDE, slopes
 
+MOST_NOISE = 10.0
 SUN_RAD = 0.8  # bearing from which the light comes, so that two sides of a box differ
 EXPOSURE_STD, BALANCE_STD, GRADIENT_STD, SENSOR = 0.10, 0.04, 0.10, 0.10
 # How much the texture of each class shows: wood and cloth much, paint and steel little.
 GRAIN = np.array([.03, .10, .02, .05, .10, .12, .08, .01, .01, .08])
+FARTHEST_M = 30
 
 
 def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
-    """Colours of views, column by column: poses (B, 3) and what they show -> rgb (B, C, H, 3) uint8.
+    """Colours of views: poses (B, 3) and what they show -> rgb (B, H, C, 3) uint8.
 
-    Draws the same random numbers whatever there is to see.
+    Draws the same random numbers whatever there is to see. Most of the time goes into passes over all pixels: so
+    there are few, each works in place, and all that the pixels of a surface share is computed once for each surface.
     """
     B, H, f = len(poses), size, np.float32
-    half = np.tan(FIELD_OF_VIEW_RAD / 2)
-    elevation = (half * (1 - (2 * np.arange(H) + 1) / H)).astype(f)  # up / ahead of each row
-    slope = slopes(H).astype(f)[:, None]
-
-    table = surfaces.paint(_table(world, poses, surfaces, H, height_m), size)
-    level, depth, grain, grain_ahead, grain_up, contrast, *albedo = (table[..., i] for i in range(9))
-    depth = np.where(level == np.inf, depth, level / elevation).clip(0, 30)
-    texture = np.sin(grain + depth * (grain_ahead + grain_up * elevation))
-
-    exposure = np.exp(noise * EXPOSURE_STD * rng.standard_normal((B, 1))).astype(f)
-    gain = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3))).astype(f)
+    exposure = np.exp(noise * EXPOSURE_STD * rng.standard_normal((B, 1)))
+    gain = 255 * exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3)))
     across, down = (noise * GRADIENT_STD * rng.standard_normal((2, B, 1, 1))).astype(f)
-    light = (0.6 + 0.4 * np.exp(depth / f(-5))) * (1 + across * slope + down * elevation)
-    light *= 1 + f(noise) * contrast * texture
-    grit = rng.integers(2 ** 64, size=(3, -(-light.size // 8)), dtype=np.uint64).view(np.uint8)  # eight a draw
+    grit = rng.integers(2 ** 64, size=(3, -(-B * H * H // 8)), dtype=np.uint64).view(np.int8)  # eight a draw
+    grit = grit[:, :B * H * H].reshape(3, B, H, H)
 
-    rgb = np.empty((*light.shape, 3), np.uint8)
+    near, near_up, phase, ahead, upward, contrast, *albedo = _table(world, poses, surfaces, gain, H, height_m)
+    surface = surfaces.paint(np.arange(len(surfaces.ray)), H)  # of each pixel, (B, C, H)
+    up = slopes(H).astype(f)  # up / ahead of each row
+    left = up[:, None]  # left / ahead of each column
+
+    depth = near_up.take(surface)
+    depth *= up
+    depth += near.take(surface)
+    np.maximum(depth, f(1 / FARTHEST_M), out=depth)
+    np.reciprocal(depth, out=depth)
+
+    texture = upward.take(surface)
+    texture *= up
+    texture += ahead.take(surface)
+    texture *= depth
+    texture += phase.take(surface)
+    np.sin(texture, out=texture)
+    texture *= contrast.take(surface)
+    texture *= f(noise)
+    texture += 1
+
+    light = depth
+    light *= f(-1 / 5)
+    np.exp(light, out=light)
+    light *= f(0.4)
+    light += f(0.6)
+    light *= (1 + across * left) + down * up
+    light *= texture
+
+    rgb = np.empty((B, H, H, 3), np.uint8)
     for c in range(3):
-        colour = albedo[c] * light * (255 * gain[:, c, None, None])
-        colour += (grit[c, :light.size].reshape(light.shape) - f(127.5)) * f(noise * SENSOR)
-        rgb[..., c] = colour.clip(0, 255)
+        colour = albedo[c].take(surface)
+        colour *= light
+        colour += grit[c] * f(noise * SENSOR)
+        np.clip(colour, 0, 255, out=colour)
+        rgb[..., c] = colour.transpose(0, 2, 1)
     return rgb
 
 
-def _table(world, poses, surfaces, size, height_m):
-    """What the pixels of each surface share, (S, 9) float32.
+def _table(world, poses, surfaces, gain, size, height_m):
+    """What the pixels of each surface share, (9, S) float32.
 
-    columns : height above the camera [m] of a level surface, inf for a front; depth of a front [m];
-              phase of the texture at the camera, its change per metre of depth straight on and upwards; its contrast; albedo
+    rows : inverse depth straight on and its change upwards [1/m]; phase of the texture at the camera, its change per
+           metre of depth straight on and upwards; its contrast; colour in full light
     """
     view, column = np.divmod(surfaces.ray, size)
-    x, y, theta = poses.T
-    s, box, kind = slopes(size)[column], surfaces.box, surfaces.kind
-    cos, sin = np.cos(theta)[view], np.sin(theta)[view]
-    ahead_x, ahead_y = cos - sin * s, sin + cos * s
+    x, y = poses[view, 0], poses[view, 1]
+    s, box, face = slopes(size)[column], surfaces.box, surfaces.face
+    cos, sin = np.cos(poses[:, 2])[view], np.sin(poses[:, 2])[view]
 
     # A ceiling is an underside at the height of the walls, a floor a top at none.
-    z = np.vstack([world.z, [world.wall_height, world.wall_height], [0, 0]])[box]
-    level = np.where(kind == FRONT, np.inf, np.where(kind == TOP, z[:, 1], z[:, 0]) - height_m)
+    low, high = np.vstack([world.z, [world.wall_height, world.wall_height], [0, 0]]).T - height_m
+    level = np.where(face == TOP, high[box], low[box])
+    near, near_up = np.where(face < TOP, [surfaces.w, np.zeros(len(box))], [np.zeros(len(box)), 1 / level])
 
     n = np.arange(len(world.label) + 2)
     turn, pitch = 2.4 * n, 12 + 9 * np.sin(1.7 * n)  # the golden angle: no two neighbours have the same grain
     gx, gy, gz = ((pitch * g)[box] for g in (np.cos(turn), np.sin(turn), np.sin(3.1 * n)))
-    grain = gx * x[view] + gy * y[view] + box
+    phase, ahead = gx * x + gy * y + box, gx * (cos - sin * s) + gy * (sin + cos * s)
 
-    facing = np.choose(kind, [_facing(world, x[view] + ahead_x / surfaces.w, y[view] + ahead_y / surfaces.w, box),
-                              0.95, 0.6])
-    facing[box >= len(world.label)] = 0.95
     contrast = np.append(GRAIN[world.label], GRAIN[[CEILING, FLOOR]])[box]
-    albedo = np.vstack([world.colour, world.ceiling_colour, world.floor_colour])[box] * facing[:, None]
-    return np.column_stack([level, 1 / surfaces.w, grain, gx * ahead_x + gy * ahead_y, gz, contrast, albedo
-                            ]).astype(np.float32)
+    colours = np.vstack([world.colour, world.ceiling_colour, world.floor_colour]).T
+    brightness = _brightness(world)[box, face]
+    albedo = [colour[box] * brightness * gain[:, c][view] for c, colour in enumerate(colours)]
+    return np.array([near, near_up, phase, ahead, gz, contrast, *albedo], np.float32)
 
 
-def _facing(world, x, y, box):
-    """Brightness of the side of each box on which the point (x, y) lies."""
-    box = box.clip(None, len(world.label) - 1)
-    dx, dy, angle = x - world.centre[box, 0], y - world.centre[box, 1], world.angle[box]
-    u = (dx * np.cos(angle) + dy * np.sin(angle)) / world.half[box, 0]
-    v = (dy * np.cos(angle) - dx * np.sin(angle)) / world.half[box, 1]
-    # On a side one of the two coordinates is +-1 and the other is less.
-    normal = angle + np.where(abs(u) > abs(v), np.where(u > 0, 0, np.pi), np.copysign(np.pi / 2, v))
-    return 0.8 + 0.15 * np.cos(normal - SUN_RAD)
+def _brightness(world):
+    """Brightness of each face of each box, (N + 2, 6); the last two boxes are the ceiling and the floor."""
+    normal = world.angle[:, None] + np.arange(TOP) * (np.pi / 2)
+    of_face = np.full((len(world.label) + 2, 6), 0.95)
+    of_face[:-2, :TOP] = 0.8 + 0.15 * np.cos(normal - SUN_RAD)
+    of_face[:-2, UNDERSIDE] = 0.6
+    return of_face
+
+
+def check_noise(noise, name="noise"):
+    """ValueError for an appearance noise that cannot be."""
+    if not 0 <= noise <= MOST_NOISE:
+        raise ValueError(f"{name}: expected 0..{MOST_NOISE:g}, found {noise}")

@@ -30,10 +30,11 @@ class PlaceGrid:
 
     def place_of_xyt(self, x, y, theta):
         """The same from coordinates in arrays of their own."""
-        ix = ((x - self.origin[0]) * (1 / self.cell_m)).clip(0, self.nx - 1).astype(np.int32)
-        iy = ((y - self.origin[1]) * (1 / self.cell_m)).clip(0, self.ny - 1).astype(np.int32)
-        ib = np.floor(theta * (self.n_bearings / (2 * np.pi))).astype(np.int32) % self.n_bearings
-        return (ix * self.ny + iy) * self.n_bearings + ib
+        ix = np.floor((x - self.origin[0]) * (1 / self.cell_m)).clip(0, self.nx - 1)
+        iy = np.floor((y - self.origin[1]) * (1 / self.cell_m)).clip(0, self.ny - 1)
+        ib = np.floor(theta * (self.n_bearings / (2 * np.pi)))
+        ib -= self.n_bearings * np.floor(ib / self.n_bearings)  # as floats: many times faster than % on ints
+        return ((ix * self.ny + iy) * self.n_bearings + ib).astype(int)
 
     def corner_of(self, places):
         """Lowest pose (x, y, theta) of each place's cell: (...,) -> (..., 3); theta in [0, 2 pi)."""

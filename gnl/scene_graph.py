@@ -21,7 +21,7 @@ from .classes import N_CLASSES
 VIEW_PX = 512  # all thresholds are stated in pixels of this view
 SMALLEST_REGION_PX = 5000
 FARTHEST_EDGE_PX = 20.0
-SIZE_UNIT_PX = VIEW_PX * VIEW_PX / 16  # S_o
+SIZE_UNIT = 16  # S_o is a 16th of the image's area
 N_SIZES, GRID = 3, 3
 N_WORDS = N_CLASSES * N_SIZES * GRID * GRID
 
@@ -45,7 +45,7 @@ class SceneGraphs:
 
     def pick(self, chosen):
         """The graphs `chosen` (n,), in that order, repeats allowed."""
-        chosen = np.asarray(chosen)
+        chosen = np.asarray(chosen, int)
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
         edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
         shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))
@@ -78,20 +78,21 @@ def scene_graph(labels):
     labels = np.asarray(labels)
     if labels.ndim not in (2, 3) or not np.issubdtype(labels.dtype, np.integer) or 0 in labels.shape[-2:]:
         raise ValueError(f"labels: expected integers (H, W) or (B, H, W), found {labels.dtype} {labels.shape}")
-    if labels.size and not (0 <= labels.min() and labels.max() < N_CLASSES):
+    if labels.size and (labels.min() < 0 or labels.max() >= N_CLASSES):
         raise ValueError(f"labels: expected 0..{N_CLASSES - 1}, found {labels.min()}..{labels.max()}")
     labels = labels if labels.ndim == 3 else labels[None]
     view, label, area, boxes = regions(labels)
-    scale = np.array([VIEW_PX / labels.shape[2], VIEW_PX / labels.shape[1]] * 2)
-    kept = area * scale[0] * scale[1] >= SMALLEST_REGION_PX
-    view, boxes = view[kept], boxes[kept] * scale
-    starts = np.searchsorted(view, np.arange(len(labels) + 1))
+    H, W = labels.shape[1:]
+    kept = area * VIEW_PX ** 2 >= SMALLEST_REGION_PX * H * W
+    starts = np.searchsorted(view[kept], np.arange(len(labels) + 1))
+    words = word_of(label[kept], boxes[kept], (W, H))
+    boxes = boxes[kept] * VIEW_PX / [W, H, W, H]
     edges = edges_of(boxes, starts)
-    return SceneGraphs(word_of(label[kept], boxes), boxes, edges, starts, np.searchsorted(edges[:, 0], starts))
+    return SceneGraphs(words, boxes, edges, starts, np.searchsorted(edges[:, 0], starts))
 
 
 def regions(labels):
-    """Part regions, 4-connected pixels of one class: labels (B, H, W) -> view, class, area, boxes in pixels.
+    """Part regions, connected pixels of one class: labels (B, H, W) -> view, class, area, boxes in pixels.
 
     Columns are cut into runs of one class; two runs of neighbouring columns that share a row and a class belong
     together. Regions come ordered by view, then by their first pixel, column by column.
@@ -105,10 +106,12 @@ def regions(labels):
     end = np.append(begin[1:], len(columns))
     label = columns[begin]
 
+    # CHOICE: pixels are connected by their sides (4-connected); the paper says only "part region".
+    column = begin // H
+
     # A run [begin, end) touches the runs of the next column that overlap [begin + H, end + H).
     first = np.searchsorted(end, begin + H, side="right")
     last = np.searchsorted(begin, end + H)
-    column = begin // H
     count = np.where(column % W < W - 1, last - first, 0)
     left = np.repeat(np.arange(len(begin)), count)
     _, right = _spread(first, first + count)
@@ -125,14 +128,16 @@ def regions(labels):
     return column[order[cut]] // W, label[order[cut]].astype(int), total(y1 - y0), boxes
 
 
-def word_of(label, boxes):
-    """Word of each region: class (N,), boxes (N, 4) px of the 512 x 512 view -> (N,) in 0..269."""
-    x0, y0, x1, y1 = boxes.T
-    S = (x1 - x0) * (y1 - y0)
-    size = (S >= SIZE_UNIT_PX).astype(int) + (S >= 6 * SIZE_UNIT_PX)
-    column = ((x0 + x1) * GRID // (2 * VIEW_PX)).astype(int)
-    row = ((y0 + y1) * GRID // (2 * VIEW_PX)).astype(int)
-    return (label * N_SIZES + size) * GRID * GRID + row * GRID + column
+def word_of(label, boxes, size=(VIEW_PX, VIEW_PX)):
+    """Word of each region: class (N,), boxes (N, 4) px of an image of that size -> (N,) in 0..269.
+
+    The image's own pixels are whole numbers, so a box or a centre just on a boundary is seen to be there.
+    """
+    (x0, y0, x1, y1), (W, H) = boxes.T, size
+    share = (x1 - x0) * (y1 - y0) * SIZE_UNIT  # S / S_o, times W H
+    size_word = (share >= W * H).astype(int) + (share >= 6 * W * H)
+    column, row = (x0 + x1) * GRID // (2 * W), (y0 + y1) * GRID // (2 * H)
+    return (label * N_SIZES + size_word) * GRID * GRID + (row * GRID + column).astype(int)
 
 
 def edges_of(boxes, starts):
@@ -144,7 +149,7 @@ def edges_of(boxes, starts):
     _, j = _spread(np.arange(1, len(boxes) + 1), np.arange(1, len(boxes) + 1) + following)
     a, b = boxes[i], boxes[j]
     gap = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:]).clip(0)  # (x, y), 0 where they overlap
-    near = (gap ** 2).sum(1) <= FARTHEST_EDGE_PX ** 2
+    near = np.hypot(*gap.T) <= FARTHEST_EDGE_PX + 1e-9  # what rounding adds to 20
     return np.stack([i[near], j[near]], 1)
 
 

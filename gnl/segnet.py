@@ -56,40 +56,46 @@ def new_params(rng, dtype=np.float32):
     return params
 
 
-def forward(params, rgb):
+def forward(params, rgb, learning=True):
     """Scores of each pixel, classes first and pixels by quads (see `to_quads`); cache: those of the layers by name.
 
-    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 32, 32)
+    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 32, 32); not `learning`: no cache, which costs room near the processor
     """
     cache = {}
 
-    def conv(name, x, stride=1):
-        out, cache[name] = conv_forward(x, params[f"{name}.w"], params[f"{name}.b"], stride)
+    def keep(name, out_and_cache):
+        out, of_layer = out_and_cache
+        if learning:
+            cache[name] = of_layer
         return out
+
+    def conv(name, x, stride=1):
+        return keep(name, conv_forward(x, params[f"{name}.w"], params[f"{name}.b"], stride))
 
     def linear(name, x):
-        out, cache[name] = linear_forward(x, params[f"{name}.w"], params[f"{name}.b"])
-        return out
+        return keep(name, linear_forward(x, params[f"{name}.w"], params[f"{name}.b"]))
 
     def relu(name, x):
-        out, cache[f"{name}.relu"] = relu_forward(x)
-        return out
+        return keep(f"{name}.relu", relu_forward(x, out=x))  # in place: no layer needs its own sums again
 
     fine = relu("stem", linear("stem", standardise(rgb, params["stem.w"].dtype)))
     x = relu("down", conv("down", fine, 2))
     for i in range(BLOCKS):
         inner = relu(f"block{i}.first", conv(f"block{i}.first", x))
-        x = relu(f"block{i}.second", x + conv(f"block{i}.second", inner))
+        added = conv(f"block{i}.second", inner)
+        added += x
+        x = relu(f"block{i}.second", added)
     y = linear("pyramid", x)
     for grid in GRIDS:
-        pooled, cache[f"pool{grid}"] = pool_forward(x, grid)
+        pooled = keep(f"pool{grid}", pool_forward(x, grid))
         y += upsample_forward(linear(f"pyramid{grid}", pooled), x.shape[1] // grid)[0]
     y = relu("pyramid", y)
     joined = linear("fine", fine)
     joined += upsample_forward(linear("coarse", y), 2)[0]
     joined = relu("head", joined)
     # Classes first: the loss and the best class then run along memory.
-    scores = params["head.w"].T @ joined.reshape(-1, WIDTH).T + params["head.b"][:, None]
+    scores = params["head.w"].T @ joined.reshape(-1, WIDTH).T
+    scores += params["head.b"][:, None]
     cache["head"] = joined, params["head.w"]
     return scores.reshape(N_CLASSES, QUAD, *joined.shape[:3]), cache
 
@@ -102,11 +108,14 @@ def standardise(rgb, dtype=np.float32):
     B, H, W, _ = rgb.shape
     flat = rgb.reshape(B, -1).astype(dtype)
     flat -= flat.mean(1, keepdims=True)
-    flat /= np.sqrt((flat ** 2).mean(1, keepdims=True)) + 1  # a view of one colour stays at zero
-    x = np.empty((B, H // 2, W // 2, 2, 2, 4), dtype)
-    x[..., :3] = flat.reshape(B, H // 2, 2, W // 2, 2, 3).transpose(0, 1, 3, 2, 4, 5)
-    x[..., 3] = np.linspace(1, -1, H, dtype=dtype).reshape(-1, 1, 2, 1)  # the camera never tilts: floor is low
-    return x.reshape(B, H // 2, W // 2, 16)
+    spread = np.sqrt(np.einsum("bi,bi->b", flat, flat) / flat.shape[1])
+    flat /= spread[:, None] + 1  # a view of one colour stays at zero
+    pixels = np.empty((B, H, W, 4), dtype)
+    for c in range(3):  # one by one: NumPy is slow along an axis of three
+        pixels[..., c] = flat.reshape(rgb.shape)[..., c]
+    pixels[..., 3] = np.linspace(1, -1, H, dtype=dtype)[:, None]  # the camera never tilts: floor is low
+    quads = pixels.reshape(B, H // 2, 2, W // 2, 8).transpose(0, 1, 3, 2, 4)
+    return quads.reshape(B, H // 2, W // 2, 16)
 
 
 def backward(params, dscores, cache):
@@ -139,7 +148,7 @@ def predict(params, rgb, chunk=8):
     """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. Few views at once stay in the cache."""
     labels = np.empty(rgb.shape[:3], np.uint8)
     for i in range(0, len(rgb), chunk):
-        scores, _ = forward(params, rgb[i:i + chunk])
+        scores, _ = forward(params, rgb[i:i + chunk], learning=False)
         best, quads = scores.max(0), np.zeros(scores.shape[1:], np.uint8)
         for k in range(1, N_CLASSES):  # arg max over classes, many times faster than along an axis of ten
             np.maximum(quads, (scores[k] == best) * np.uint8(k), out=quads)
@@ -152,6 +161,7 @@ def train(params, rgb, labels, rng, epochs, batch=8, rate=4e-3, progress=None):
 
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
+    batch = min(batch, len(rgb))
     adam, n_steps = Adam(params), epochs * (len(rgb) // batch)
     for step in range(n_steps):
         if step % (len(rgb) // batch) == 0:
@@ -178,7 +188,7 @@ def accuracy(predicted, true):
 
 
 def to_quads(images):
-    """Pixels by quads: (B, H, W, ...) -> (4, B, H / 2, W / 2, ...), upper left, upper right, lower left, lower right."""
+    """Pixels by quads: (B, H, W, ...) -> (4, B, H / 2, W / 2, ...), upper left and right, lower left and right."""
     return np.stack([images[:, i::2, j::2] for i in (0, 1) for j in (0, 1)])
 
 

@@ -20,6 +20,7 @@ import numpy as np
 FIELD_OF_VIEW_RAD = np.pi / 2  # CHOICE: Habitat's default
 TOP, UNDERSIDE = 4, 5  # faces of a box; 0..3 are its sides, counter-clockwise from the end of its first axis
 NEAREST_M = 0.05  # nearer things are cut off: the camera sits inside the robot
+IN_FRONT_M = 1e-9
 
 
 @dataclass(frozen=True)
@@ -55,89 +56,79 @@ def slopes(n_columns):
 
 def cast(world, poses, n_columns=512):
     """Semantic strip of each pose: poses (B, 3) -> Strip. Nothing behind the nearest full-height wall is kept."""
-    poses, B, C = np.asarray(poses, float), len(poses), n_columns
-    view, box, corners, sides = _boxes_ahead(world, poses)
-    begin, end, nearest = _columns(*corners, C)
-    begin, end = view * C + begin, view * C + end
-    in_view = end > begin
+    B, C, N = len(poses), n_columns, len(world.label)
+    ahead, left, normal_x, normal_y, offset = _sides(world, poses)  # (4, B * N) each
 
-    def cross(chosen):
-        return _cross(sides[:, :, chosen], begin[chosen], (end - begin)[chosen], box[chosen], np.tile(slopes(C), B))
+    # Columns that a box can cover, of those with a corner in front of the camera.
+    seen = np.flatnonzero(ahead.max(0) > IN_FRONT_M)  # view * N + box
+    rims = (1 - np.stack(_slopes_of(ahead[:, seen], left[:, seen])) / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5
+    begin, end = np.ceil(rims[0]).clip(0, C).astype(int), (np.floor(rims[1]) + 1).clip(0, C).astype(int)
+    within = np.flatnonzero(end > begin)
+    seen, begin, count = seen[within], begin[within], (end - begin)[within]
+    view, box = np.divmod(seen, N)
 
-    closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height))[box]
-    walls = cross(np.flatnonzero(closes & in_view))
-    horizon = np.zeros(B * C + 1)  # the nearest full-height wall on each ray
-    np.maximum.at(horizon, walls[0], walls[1])
-
-    # Of the other boxes most stand in other rooms: behind all the walls in their columns.
-    others = np.flatnonzero(~closes & in_view)
-    ranges = np.stack([begin[others], end[others]], 1).ravel()
-    farthest_wall = np.minimum.reduceat(horizon, ranges)[::2] if len(others) else 0
-    both = zip(walls, cross(others[nearest[others] >= farthest_wall]), strict=True)
-    ray, w_in, *rest = map(np.concatenate, both)
-    kept = np.flatnonzero(w_in >= horizon[ray])
-    return Strip(B, C, *(a[kept] for a in (ray, w_in, *rest)))
-
-
-def _boxes_ahead(world, poses):
-    """Pairs of a view and a box that may be in it, and the box as its camera sees it, 0..3 as the sides are numbered.
-
-    returns : view (n,), box (n,); corners (ahead, left) [m], (2, 4, n);
-              outward normals (n_x, n_y) and offsets m [m] of the sides n . p = m, (3, 4, n)
-    """
-    x, y, theta = poses.T
-    cos, sin = np.cos(theta), np.sin(theta)
-    ahead = np.outer(cos, world.centre[:, 0]) + np.outer(sin, world.centre[:, 1]) - (cos * x + sin * y)[:, None]
-    left = np.outer(cos, world.centre[:, 1]) - np.outer(sin, world.centre[:, 0]) - (cos * y - sin * x)[:, None]
-    # The view is the wedge |left| <= ahead tan(fov / 2): the circle around the box must reach into it.
-    circle = np.hypot(*world.half.T) / np.cos(FIELD_OF_VIEW_RAD / 2)
-    view, box = np.nonzero(abs(left) - np.tan(FIELD_OF_VIEW_RAD / 2) * ahead < circle)
-
-    cx, cy, turn = ahead[view, box], left[view, box], world.angle[box] - theta[view]
-    ex, ey = np.cos(turn), np.sin(turn)  # the box's first axis; its second is (-ey, ex)
-    h1, h2 = world.half[box].T
-    ux, uy, vx, vy = h1 * ex, h1 * ey, -h2 * ey, h2 * ex
-    along, across = cx * ex + cy * ey, cy * ex - cx * ey
-    corners = np.array([[cx + ux + vx, cx - ux + vx, cx - ux - vx, cx + ux - vx],
-                        [cy + uy + vy, cy - uy + vy, cy - uy - vy, cy + uy - vy]])
-    m = np.array([h1 + along, h2 + across, h1 - along, h2 - across])
+    # Each side is a line w = a + b s. Spread the lines over the columns of their box and clip with them.
+    m = offset[:, seen]
     m[abs(m) < 1e-12] = 1e-12  # in the plane of a side one does not see it
-    return view, box, corners, np.array([[ex, -ey, -ex, ey], [ey, ex, -ey, -ex], m])
-
-
-def _columns(ahead, left, n_columns):
-    """Columns [begin, end) that boxes can cover, and their greatest inverse depth, from their corners (4, n)."""
-    half = np.tan(FIELD_OF_VIEW_RAD / 2)
-    # A corner behind the camera lies at infinity on its side; what is all behind covers no column.
-    s = np.where(ahead > 1e-9, left / np.maximum(ahead, 1e-9), np.copysign(np.inf, left))
-    begin, end = (np.ceil((1 - edge / half) * n_columns / 2 - 0.5).clip(0, n_columns).astype(int)
-                  for edge in (s.max(0), np.nextafter(s.min(0), -np.inf)))
-    end[ahead.max(0) <= 1e-9] = 0
-    return begin, end, 1 / np.maximum(ahead.min(0), 1e-9)
-
-
-def _cross(sides, begin, count, box, slope_of_ray):
-    """Rays begin ... begin + count - 1 of each box with its four sides (3, 4, n): ray, w_in, w_out, box, side."""
-    normal_x, normal_y, m = sides
-    a, b = normal_x / m, normal_y / m  # each side is a line w = a + b s over the columns of its box
-    facing = m < 0
-    ray = np.arange(count.sum()) + np.repeat(begin - np.cumsum(count) + count, count)
-    s = slope_of_ray[ray]
+    a, b = normal_x[:, seen] / m, normal_y[:, seen] / m
+    column = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count - begin, count)
+    s = slopes(C)[column]
 
     def spread(a, b):
         return np.repeat(a, count) + np.repeat(b, count) * s
 
-    # Of two opposite sides, k and k + 2, at most one faces the camera.
-    entries, numbers = [], []
-    for k in (0, 1):
-        pick = np.where(facing[k], k, k + 2), np.arange(len(box))
-        either = facing[pick]
-        entries.append(spread(np.where(either, a[pick], np.inf), np.where(either, b[pick], 0)))
-        numbers.append(np.repeat(pick[0], count))
-    side = np.where(entries[0] < entries[1], *numbers)
-    w_in = np.minimum(np.minimum(*entries), 1 / NEAREST_M)
+    facing = m < 0  # of two opposite sides, k and k + 2, at most one
+    side = [np.where(facing[k], k, k + 2) for k in (0, 1)]
+    w_in = []
+    for k in side:
+        either = np.choose(k, facing)
+        w_in.append(spread(np.where(either, np.choose(k, a), np.inf), np.where(either, np.choose(k, b), 0)))
+    second = w_in[1] < w_in[0]
+    w_in = np.minimum(np.minimum(*w_in), 1 / NEAREST_M)
     w_out = np.zeros(len(s))
     for k in range(4):
         np.maximum(w_out, spread(np.where(facing[k], 0, a[k]), np.where(facing[k], 0, b[k])), out=w_out)
-    hit = np.flatnonzero(w_in > w_out)
-    return ray[hit], w_in[hit], w_out[hit], np.repeat(box, count)[hit], side[hit]
+
+    ray, hit = np.repeat(view * C, count) + column, w_in > w_out
+    closes = (world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height)
+    wall = np.flatnonzero(np.repeat(closes[box], count) & hit)
+    horizon = np.zeros(B * C)  # the nearest full-height wall on each ray
+    np.maximum.at(horizon, ray[wall], w_in[wall])
+    kept = np.flatnonzero(hit & (w_in >= horizon[ray]))
+    owner = np.repeat(np.arange(len(seen)), count)[kept]
+    side = np.where(second[kept], side[1][owner], side[0][owner])
+    return Strip(B, C, ray[kept], w_in[kept], w_out[kept], box[owner], side)
+
+
+def _slopes_of(ahead, left):
+    """Greatest and least slope of boxes, (n,) each, from their corners (4, n), of which one at least is in front."""
+    front = ahead > IN_FRONT_M
+    # Where a side goes from before the camera to behind it, the box reaches out of the view to left or right.
+    next_ahead, next_left = np.roll(ahead, -1, 0), np.roll(left, -1, 0)
+    leaves = front != np.roll(front, -1, 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        corner = np.where(front, left / ahead, np.nan)
+        crossing = (left * next_ahead - next_left * ahead) / (next_ahead - ahead)
+        rim = np.where(leaves, np.copysign(np.inf, crossing), np.nan)
+    s = np.concatenate([corner, rim])
+    return np.fmax.reduce(s, 0), np.fmin.reduce(s, 0)  # these pass over nan
+
+
+def _sides(world, poses):
+    """Corners and sides of all boxes as each camera sees them, as arrays (4, B * N).
+
+    returns : corners (ahead, left) [m]; outward normals (n_x, n_y) and offsets m [m] of the sides n . p = m
+    """
+    x, y, theta = (np.asarray(poses, float)[:, i, None] for i in range(3))
+    cos, sin = np.cos(theta), np.sin(theta)
+    dx, dy = world.centre[:, 0] - x, world.centre[:, 1] - y
+    cx, cy = (cos * dx + sin * dy).ravel(), (cos * dy - sin * dx).ravel()
+    turn = (world.angle - theta).ravel()
+    ex, ey = np.cos(turn), np.sin(turn)  # the box's first axis; its second is (-ey, ex)
+    h1, h2 = (np.tile(h, len(poses)) for h in world.half.T)
+    ux, uy, vx, vy = h1 * ex, h1 * ey, -h2 * ey, h2 * ex
+    along, across = cx * ex + cy * ey, cy * ex - cx * ey
+    return (np.stack([cx + ux + vx, cx - ux + vx, cx - ux - vx, cx + ux - vx]),
+            np.stack([cy + uy + vy, cy - uy + vy, cy - uy - vy, cy + uy - vy]),
+            np.stack([ex, -ey, -ex, ey]), np.stack([ey, ex, -ey, -ex]),
+            np.stack([h1 + along, h2 + across, h1 - along, h2 - across]))

@@ -5,6 +5,8 @@ import signal
 import sys
 import time
 
+CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
+
 
 class Stage:
     """A line on the terminal that lives while a stage runs; where there is no terminal, only its end is printed."""
@@ -28,31 +30,43 @@ class Stage:
     def note(self, text):
         """Replace the line's text."""
         if self.stream.isatty():
-            self.stream.write(f"\r\x1b[K{self.name:<8} {text}")
+            self.stream.write(f"{CLEAR}{self.name:<8} {text}")
             self.stream.flush()
 
     def done(self, text):
         """Fix the line: the result and the time."""
-        start = "\r\x1b[K" if self.stream.isatty() else ""
+        start = CLEAR if self.stream.isatty() else ""
         self.stream.write(f"{start}{self.name:<8} {text:<76} {self.seconds:5.1f} s\n")
         self.stream.flush()
 
 
 def second_process():
-    """A pool of one process beside this one, for use in a with statement; an interruption ends it too."""
-    # Spawned, not forked: it must not inherit half a computation. Ctrl-C is for the first process to handle.
-    return multiprocessing.get_context("spawn").Pool(1, signal.signal, (signal.SIGINT, signal.SIG_IGN))
+    """A pool of one process beside this one, for use in a with statement; whatever ends this one ends it too."""
+    here = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C is for the first process to handle
+    try:
+        # Spawned, not forked: it must not inherit half a computation.
+        return multiprocessing.get_context("spawn").Pool(1, leave_tidily)
+    finally:
+        signal.signal(signal.SIGINT, here)
+
+
+def leave_tidily():
+    """Let a kill end this process through its with statements, so that nothing half-written stays behind."""
+    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
 
 
 def guarded(program, run, *args):
     """run(*args) for the command line: a user's mistake is one line on stderr and exit status 2, no traceback."""
+    leave_tidily()
+    status, line = 0, None
     try:
         run(*args)
-        status = 0
     except (ValueError, OSError) as error:
-        print(f"{program}: {error}".replace("\n", " "), file=sys.stderr)
-        status = 2
+        status, line = 2, str(error).replace("\n", " ")
     except KeyboardInterrupt:
-        print(f"{program}: interrupted; what was finished is kept", file=sys.stderr)
-        status = 130
+        status, line = 128 + signal.SIGINT, "interrupted; what was finished is kept"
+    if status:
+        if sys.stdout.isatty():
+            print(end=CLEAR, flush=True)
+        print(f"{program}: {line}", file=sys.stderr)
     sys.exit(status)

@@ -43,7 +43,8 @@ class World:
         self.wall_height = float(plan.get("wall_height", floor_plan.WALL_HEIGHT_M))
         ends = np.array(plan["walls"], float).reshape(-1, 2)
         self.bounds = (*ends.min(0), *ends.max(0))
-        rng = np.random.default_rng(zlib.crc32(self.name.encode()))  # colours belong to the home, not to a run
+        # Colours belong to the home, not to a run.
+        rng = np.random.default_rng(zlib.crc32(self.name.encode(errors="replace")))
         shell = plan.get("colors", {})
         self.floor_colour = _colour(FLOOR, shell.get("floor"), rng)
         self.ceiling_colour = _colour(CEILING, shell.get("ceiling"), rng)
@@ -109,7 +110,7 @@ class World:
         return (near[0] & near[1] & above).any(1)
 
     def _door(self, door, walls, wall_colour, rng):
-        """Boxes of a door: its leaf, open to the left of the segment and hinged at its first end, or shut; the lintel."""
+        """Boxes of a door: its leaf, shut or hinged at the segment's first end and turned to its left; the lintel."""
         segment, height = np.array(door["segment"], float), door.get("height", floor_plan.DOOR_HEIGHT_M)
         hinge, end = segment.reshape(2, 2)
         along = (end - hinge) / np.hypot(*(end - hinge))

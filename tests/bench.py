@@ -1,15 +1,14 @@
 """Our kernels beside the plain or the library way: `make bench`.
 
-Times drift by a third from run to run, so what counts is the ratio: ours and its rivals take turns within one run, and
-a row shows the medians. All times are microseconds of one processor per view, graph, query or filter. Nothing is
-asserted. Rivals that are not installed (`pip install -e .[bench]`) are not counted.
+Times drift by a third from run to run, so what counts is the ratio: ours and its rivals take turns within one run,
+and a row shows the medians. All times are microseconds of one processor per view, graph, query or filter. Nothing
+is asserted. Rivals that are not installed (`pip install -e .[bench]`) are not counted.
 """
 
 import importlib
 import time
 
 import numpy as np
-import pymunk
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
@@ -19,13 +18,11 @@ from gnl.camera import true_labels
 from gnl.particles import ParticleFilter
 from gnl.places import PlaceGrid
 from gnl.rank_index import RankIndex
-from gnl.ranks import reciprocal_ranks
-from gnl.robot import Robot
 from gnl.scene_graph import regions, scene_graph
-from gnl.strip import cast, slopes
+from gnl.strip import cast
+from tests.bench_data import ray_loop, views_like
 
-ROUNDS, SAMPLE_S = 11, 0.004  # turns of each peer, and how long one lasts at least
-K = 300  # places
+ROUNDS, SAMPLE_S, K = 11, 0.004, 300  # turns of each peer, and how long one lasts at least; places
 
 
 def optional(name):
@@ -47,71 +44,59 @@ class Table:
         print(f"{'kernel':42}{'us':>9}  {'beside':38}{'us':>9}{'ratio':>8}{'goal':>7}{'stretch':>9}")
 
     def race(self, name, ours, n, *rivals):
-        """Time `ours`, which does n views at once, beside each rival: (name, function or None, its n, goal, stretch)."""
-        here = [rival for rival in rivals if rival[1]]
-        times = in_turns([(ours, n), *(rival[1:3] for rival in here)])
-        for rival, _, _, goal, stretch in here:
-            mine, its = times[0], times[1 + [r[0] for r in here].index(rival)]
-            ratio = np.median(mine / its)
-            counts = goal is not None
-            self.rows, self.goals = self.rows + counts, self.goals + (counts and ratio <= goal)
-            self.stretches += counts and ratio <= stretch
-            wanted = f"{goal:7.3g}{stretch:9.3g}" if counts else f"{'-':>7}{'-':>9}"
-            print(f"{name:42}{np.median(mine):9.1f}  {rival:38}{np.median(its):9.1f}{ratio:8.3f}{wanted}", flush=True)
-        for rival in rivals:
-            if rival not in here:
+        """Time `ours`, n views a call, beside each rival: (name, function or None, its n, goal, stretch)."""
+        here = [rival[1:3] for rival in rivals if rival[1]]
+        mine, *others = in_turns([(ours, n), *here])
+        for rival, function, _, goal, stretch in rivals:
+            print(f"{name:42}{np.median(mine):9.1f}  {rival:38}", end="")
+            if not function:
                 self.missing += 1
-                print(f"{name:42}{np.median(times[0]):9.1f}  {rival[0]:38}not installed: not counted", flush=True)
+                print("not installed: not counted")
+                continue
+            its = others.pop(0)
+            ratio = np.median(mine / its)
+            print(f"{np.median(its):9.1f}{ratio:8.3f}", f"{goal:6.3g}{stretch:9.3g}" if goal else "     -        -")
+            if goal:
+                self.rows, self.goals, self.stretches = (self.rows + 1, self.goals + (ratio <= goal),
+                                                         self.stretches + (ratio <= stretch))
 
     def end(self):
-        print(f"goal reached in {self.goals} of {self.rows} rows, stretch in {self.stretches}; not counted: {self.missing}")
+        print(f"goal reached in {self.goals} of {self.rows} rows, stretch in {self.stretches}; "
+              f"not installed: {self.missing}")
 
 
 def in_turns(peers):
-    """Times of each (function, n) in microseconds per one of its n, (peers, ROUNDS): one turn each, round by round."""
-    repeats = []
-    for function, _ in peers:
-        function()  # warm
+    """Times of each (function, n) in microseconds per one of its n, round by round, each in turn: (peers, ROUNDS)."""
+    def seconds(function, repeat):
         start = time.process_time()
-        function()
-        repeats.append(max(1, int(SAMPLE_S / (time.process_time() - start))))
-    times = np.empty((len(peers), ROUNDS))
-    for turn in range(ROUNDS):
-        for i, ((function, n), repeat) in enumerate(zip(peers, repeats, strict=True)):
-            start = time.process_time()
-            for _ in range(repeat):
-                function()
-            times[i, turn] = (time.process_time() - start) / (repeat * n) * 1e6
-    return times
+        for _ in range(repeat):
+            function()
+        return time.process_time() - start
+
+    repeats = [max(1, int(SAMPLE_S / seconds(function, 2) * 2)) for function, _ in peers]
+    turns = [[seconds(function, repeat) / repeat for (function, _), repeat in zip(peers, repeats, strict=True)]
+             for _ in range(ROUNDS)]
+    return np.array(turns).T / [[n] for _, n in peers] * 1e6
 
 
 def cameras(table, world, rng):
     """Rays and labels beside pymunk's own ray query, regions beside scipy's."""
     poses = world.free_poses(16, rng)
-    one, space = poses[:1], Robot(world).space
-    bearing = np.arctan(slopes(512))
-    reach_m = np.hypot(*np.subtract(world.bounds[2:], world.bounds[:2]))
-    rays = [(x, y, x + reach_m * np.cos(t), y + reach_m * np.sin(t)) for x, y, a in one for t in a + bearing]
-    everything = pymunk.ShapeFilter()
+    singles = np.split(poses[:4], 4)
+    rival = "pymunk segment_query_first, ray by ray", ray_loop(world, poses[:4]), 4
+    for name, kernel, stretch in (("512 rays", cast, .03), ("labels 512 x 512", true_labels, .025)):
+        table.race(f"{name}, one view", lambda kernel=kernel: [kernel(world, one) for one in singles], 4,
+                   (*rival, .06, stretch))
+        table.race(f"{name}, 16 views", lambda kernel=kernel: kernel(world, poses), 16, (*rival, .06, stretch))
 
-    def loop():
-        for x0, y0, x1, y1 in rays:
-            space.segment_query_first((x0, y0), (x1, y1), 0, everything)
-
-    rival = "pymunk segment_query_first, ray by ray", loop, 1
-    table.race("512 rays, one view", lambda: cast(world, one), 1, (*rival, .06, .03))
-    table.race("512 rays, 16 views", lambda: cast(world, poses), 16, (*rival, .06, .03))
-    table.race("labels 512 x 512, one view", lambda: true_labels(world, one), 1, (*rival, .06, .025))
-    table.race("labels 512 x 512, 16 views", lambda: true_labels(world, poses), 16, (*rival, .06, .025))
-
-    for size, goal, stretch in ((512, .07, .03), (64, None, None)):
+    for size, goal in ((512, .07), (64, None)):
         labels = true_labels(world, poses, size)
+
+        def by_scipy(labels=labels):
+            return [ndimage.label(view == k) for view in labels for k in range(10)]
+
         table.race(f"regions {size} x {size}, 16 views", lambda labels=labels: regions(labels), 16,
-                   ("scipy.ndimage.label, class by class", lambda labels=labels: scipy_regions(labels), 16, goal, stretch))
-
-
-def scipy_regions(labels):
-    return [ndimage.label(view == k) for view in labels for k in range(10)]
+                   ("scipy.ndimage.label, class by class", by_scipy, 16, goal, goal))
 
 
 def nets(table, rng):
@@ -151,44 +136,36 @@ def graph_nets(table, world, rng):
     table.race("GCN forward, 32 graphs", lambda: ours.scores(graphs), 32,
                ("torch_geometric, graph by graph", geometric and geometric.one_by_one, 32, .3, .12),
                ("torch_geometric, as one batch", geometric and geometric.at_once, 32, .3, .12))
-    table.race("GCN training step, 32 graphs", step, 32, ("torch, dense and padded", theirs and theirs.step, 32, .7, .4))
+    table.race("GCN training step, 32 graphs", step, 32,
+               ("torch, dense and padded", theirs and theirs.step, 32, .7, .4))
 
 
 def neighbours(table, rng):
-    """The rank index beside everything that looks at all vectors, and a KD-tree of scipy's."""
-    for n, stretch in ((10_000, .02), (50_000, .01)):
-        states = views_like(n + 64, rng)
+    """The rank index beside two that look at all vectors, and scipy's KD-tree."""
+    for n, goal, stretch in ((10_000, .15, .02), (50_000, .03, .01)):
+        states = views_like(n + 64, K, rng)
         points, queries = states[:n], states[n:]
-        index, norm = RankIndex(K), (points[0] ** 2).sum()
+        index, flat, tree = RankIndex(K), faiss and faiss.IndexFlatL2(K), n <= 10_000 and cKDTree(points)
         index.add(points)
-        flat = faiss and faiss.IndexFlatL2(K)
         if faiss:
             faiss.omp_set_num_threads(1)
             flat.add(points)
 
-        def brute(points=points, queries=queries, norm=norm):
-            for q in queries:
-                squared = 2 * (norm - points @ q)  # all vectors are of one length
-                np.argpartition(squared, 4)[:4]
-
         def one_by_one(search, queries=queries):
-            return lambda: [search(queries[i:i + 1], 4) for i in range(len(queries))]
+            return lambda: [search(query, 4) for query in queries[:, None]]
 
-        tree = cKDTree(points) if n <= 10_000 else None
-        goal = .15 if n <= 10_000 else .03
+        def at_once(search, queries=queries):
+            return lambda: search(queries, 4)
+
+        def nearest_by_product(query, k, points=points):  # all vectors are of one length
+            return np.argpartition(-(points @ query[0]), k)[:k]
+
         table.race(f"4 nearest of {n:,}, one query", one_by_one(index.query), 64,
                    ("faiss IndexFlatL2", faiss and one_by_one(flat.search), 64, goal, stretch),
-                   ("BLAS product with all", brute, 64, None, None),
+                   ("BLAS product with all", one_by_one(nearest_by_product), 64, None, None),
                    *([("scipy cKDTree", one_by_one(tree.query), 64, None, None)] if tree else []))
-        table.race(f"4 nearest of {n:,}, 64 queries", lambda index=index, queries=queries: index.query(queries, 4), 64,
-                   ("faiss IndexFlatL2", faiss and (lambda flat=flat, queries=queries: flat.search(queries, 4)), 64, None, None))
-
-
-def views_like(n, rng):
-    """Reciprocal ranks as a classifier gives them: views of K places that come in 40 looks, told apart with noise."""
-    look, place = rng.standard_normal((40, 12)), rng.integers(K, size=n)
-    kind = look[rng.integers(40, size=K)] + 0.5 * rng.standard_normal((K, 12))
-    return reciprocal_ranks((kind[place] + 0.25 * rng.standard_normal((n, 12))) @ kind.T)
+        table.race(f"4 nearest of {n:,}, 64 queries", at_once(index.query), 64,
+                   ("faiss IndexFlatL2", faiss and at_once(flat.search), 64, None, None))
 
 
 def filters(table, world, rng):

@@ -27,7 +27,7 @@ LAYERS = {  # name: inputs, forward, backward; all sizes differ, so that a trans
     "conv, stride 2": (conv_data(), lambda x, w, b: nn.conv_forward(x, w, b, 2), nn.conv_backward),
     "linear": (linear_data(), nn.linear_forward, nn.linear_backward),
     "relu": ((normal(0, 3, 5, 4),), nn.relu_forward, nn.relu_backward),
-    "pool": ((normal(0, 2, 6, 9, 5),), lambda x: nn.pool_forward(x, 3), nn.pool_backward),
+    "pool": ((normal(0, 2, 6, 12, 5),), lambda x: nn.pool_forward(x, 3), nn.pool_backward),
     "upsample": ((normal(0, 2, 4, 3, 5),), lambda x: nn.upsample_forward(x, 3), nn.upsample_backward),
 }
 

@@ -226,6 +226,7 @@ def test_a_saved_store_is_read_back_with_its_past_and_goes_on_as_the_other(tmp_p
         for step in transitions(10, 3):
             both.learn(*step)
         both.checkpoint()
+    assert [len(changed) for _, changed, _ in again.log[-1]] == [len(changed) for _, changed, _ in store.log[-1]]
     asked = random_states(np.random.default_rng(5), 40)
     assert len(again.log) == n_checkpoints + 1
     for i in range(n_checkpoints + 1):

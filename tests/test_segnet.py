@@ -103,6 +103,23 @@ def test_a_little_training_halves_the_loss(views):
     assert 0.1 < iou < right
 
 
+def test_a_mirrored_view_has_mirrored_labels(monkeypatch):
+    """Grey as bright as its label says what each pixel should be called."""
+    labels = np.random.default_rng(0).integers(10, size=(16, 8, 8), dtype=np.uint8)
+    labels[..., 0], labels[..., 7] = 0, 9
+    shown, told = [], []
+    forward, loss = segnet.forward, segnet.softmax_cross_entropy
+    monkeypatch.setattr(segnet, "forward", lambda params, rgb: shown.append(rgb) or forward(params, rgb))
+    monkeypatch.setattr(segnet, "softmax_cross_entropy",
+                        lambda scores, y, axis: told.append(segnet.from_quads(y)) or loss(scores, y, axis))
+    monkeypatch.setattr(segnet, "GRIDS", (1, 2))
+    segnet.train(segnet.new_params(np.random.default_rng(0)), labels[..., None].repeat(3, -1) * np.uint8(20), labels,
+                 np.random.default_rng(0), epochs=10, batch=8)
+    for rgb, y in zip(shown, told, strict=True):
+        np.testing.assert_array_equal(rgb[..., 0] // 20, y)
+    assert {int(y[0, 0, 0]) for y in told} == {0, 9}  # both ways round
+
+
 def test_one_seed_trains_one_net(views):
     nets = [segnet.new_params(np.random.default_rng(0)) for _ in range(2)]
     for net in nets:

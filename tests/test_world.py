@@ -170,14 +170,15 @@ def test_of_doors_without_a_state_a_front_door_is_shut_and_an_inner_door_open():
 
 def test_what_lies_before_an_open_front_door_is_not_inside():
     world = World(front_door(state="open"))
-    assert world.free_space.inside([[3, 2], [0.5, 2], [-0.7, 2], [-1.5, 2]]).tolist() == [True, True, False, False]
+    assert world.free_space.inside([[3, 2], [0.5, 2], [-0.4, 2], [-1.5, 2]]).tolist() == [True, True, False, False]
     poses = world.free_poses(500, np.random.default_rng(0))
     assert (poses[:, 0] > -0.3).all()
 
 
 def test_a_front_door_through_which_a_ball_would_fit_is_shut_to_it():
-    world = World(front_door(width=1.8, state="open"))
-    assert world.free_space.inside([[3, 2], [5.5, 3.5], [-1.5, 2]]).tolist() == [True, True, False]
+    plan = front_door(width=1.8, state="open")
+    plan["walls"] += [[3, 0, 3, 1.6], [3, 2.4, 3, 4]]
+    assert World(plan).free_space.inside([[1.5, 2], [4.5, 2], [-1.5, 2]]).tolist() == [True, True, False]
 
 
 def test_outside_nothing_is_free():

@@ -1,0 +1,31 @@
+"""What bench.py measures on: rays in pymunk, and ranks like those of a classifier."""
+
+import numpy as np
+import pymunk
+
+from gnl.ranks import reciprocal_ranks
+from gnl.strip import slopes
+
+
+def ray_loop(world, poses):
+    """A function that casts the 512 rays of each view at pymunk shapes of all boxes, one after the other."""
+    space = pymunk.Space()
+    for (x, y), (a, b), angle in zip(world.centre, world.half, world.angle, strict=True):
+        turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
+        space.add(pymunk.Poly(space.static_body, [(a, b), (-a, b), (-a, -b), (a, -b)], turn))
+    reach_m, everything = np.hypot(*np.subtract(world.bounds[2:], world.bounds[:2])), pymunk.ShapeFilter()
+    rays = [((x, y), (x + reach_m * np.cos(t), y + reach_m * np.sin(t)))
+            for x, y, theta in poses for t in theta + np.arctan(slopes(512))]
+
+    def loop():
+        for start, end in rays:
+            space.segment_query_first(start, end, 0, everything)
+
+    return loop
+
+
+def views_like(n, n_places, rng):
+    """Reciprocal ranks as a classifier gives them: views of n_places that come in 40 looks, told apart with noise."""
+    look, place = rng.standard_normal((40, 12)), rng.integers(n_places, size=n)
+    kind = look[rng.integers(40, size=n_places)] + 0.5 * rng.standard_normal((n_places, 12))
+    return reciprocal_ranks((kind[place] + 0.25 * rng.standard_normal((n, 12))) @ kind.T)

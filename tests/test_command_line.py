@@ -1,0 +1,226 @@
+"""The command line: help, the graph of a label image worked by hand, and one clear line for every mistake."""
+
+import struct
+import subprocess
+import sys
+import zlib
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gnl.__main__ import main
+from gnl.classes import PALETTE
+
+# A bed at the left and a tv at the lower right before a wall; too small a lamp.
+LABELS = np.zeros((512, 512), np.uint8)
+LABELS[100:300, 48:248] = 3
+LABELS[320:400, 332:432] = 8
+LABELS[10:60, 400:480] = 9
+ADE20K = np.array([1, 4, 6, 8, 15, 16, 24, 51, 90, 150], np.uint8)
+
+# word = (class * 3 + size) * 9 + location. The bed's box, 40,000 px, is more than a 16th of the image, 16,384 px, and
+# less than 6 of these; its middle (148, 200) lies in the first column and the second row of 3 x 3.
+NODES = """\
+  0  wall, large, centre  word 22  box 0 0 512 512  next to 1 2
+  1  bed, medium, left  word 93  box 48 100 248 300  next to 0
+  2  tv, small, lower right  word 224  box 332 320 432 400  next to 0
+"""
+
+
+def run(*arguments):
+    """Exit status of `python -m gnl`."""
+    with pytest.raises(SystemExit) as exit:
+        main([str(argument) for argument in arguments])
+    return exit.value.code
+
+
+def write(path, labels=LABELS, palette=False):
+    image = Image.fromarray(labels)
+    if palette:
+        image.putpalette(np.resize(PALETTE, (256, 3)).ravel().tolist())
+        assert image.mode == "P"
+    image.save(path)
+    return path
+
+
+def test_the_module_runs_as_a_program():
+    finished = subprocess.run([sys.executable, "-W", "error", "-m", "gnl", "--help"], capture_output=True, text=True)
+    assert finished.returncode == 0
+    assert "demo" in finished.stdout
+    assert "graph" in finished.stdout
+    assert finished.stderr == ""
+
+
+@pytest.mark.parametrize("command", ["demo", "graph"])
+def test_each_command_has_help(capsys, command):
+    assert run(command, "--help") == 0
+    assert capsys.readouterr().out.startswith(f"usage: python -m gnl {command}")
+
+
+@pytest.mark.parametrize("line", ["", "dance", "graph", "demo", "graph a.png --loose", "demo --tests many"])
+def test_what_is_no_command_has_status_2(capsys, line):
+    assert run(*line.split()) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("usage: python -m gnl")
+
+
+def test_the_graph_of_a_label_image_is_printed_and_drawn(tmp_path, capsys):
+    path, picture = write(tmp_path / "view.png"), tmp_path / "view-graph.png"
+    assert run("graph", path) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{path}: 512 x 512 pixels, 3 nodes, 2 edges\n{NODES}drawn in {picture}\n"
+    assert err == ""
+    with Image.open(picture) as image:
+        drawn = np.array(image.convert("RGB"))
+    assert drawn.shape == (512, 512, 3)
+    assert len(np.unique(drawn.reshape(-1, 3), axis=0)) > 10  # boxes, edges and words, not the labels alone
+
+
+def of_ade20k(path):
+    write(path, ADE20K[LABELS])
+    return ["--ade20k"]
+
+
+def with_palette(path):
+    write(path, palette=True)
+    return []
+
+
+def with_palette_of_ade20k(path):
+    write(path, ADE20K[LABELS], palette=True)
+    return ["--ade20k"]
+
+
+def of_16_bits(path):
+    write(path, LABELS.astype(np.uint16))
+    return []
+
+
+def of_other_size(path):
+    write(path, LABELS[::2, ::4])
+    return []
+
+
+@pytest.mark.parametrize("make", [of_ade20k, with_palette, with_palette_of_ade20k, of_16_bits, of_other_size],
+                         ids=lambda make: make.__name__)
+def test_the_same_labels_in_another_form_make_the_same_graph(tmp_path, capsys, make):
+    path = tmp_path / "view.png"
+    options = make(path)
+    assert run("graph", path, *options) == 0
+    assert NODES in capsys.readouterr().out
+
+
+def test_the_picture_goes_where_it_is_told_to(tmp_path):
+    path = write(tmp_path / "view.png")
+    assert run("graph", path, "--out", tmp_path / "new" / "picture.png") == 0
+    with Image.open(tmp_path / "new" / "picture.png") as image:
+        assert image.size == (512, 512)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["new", "view.png"]
+
+
+def test_a_view_without_a_region_has_an_empty_graph(tmp_path, capsys):
+    crumbs = np.add.outer(np.arange(512), np.arange(512)).astype(np.uint8) % 2
+    assert run("graph", write(tmp_path / "view.png", crumbs)) == 0
+    assert "512 x 512 pixels, 0 nodes, 0 edges\n" in capsys.readouterr().out
+
+
+def missing(path):
+    return ["found nothing"]
+
+
+def a_song(path):
+    path.write_text("la la la")
+    return ["expected an image"]
+
+
+def folder(path):
+    path.mkdir()
+    return ["expected an image"]
+
+
+def rgb(path):
+    Image.new("RGB", (8, 8)).save(path)
+    return ["expected one class index a pixel", "RGB"]
+
+
+def index_10(path):
+    write(path, np.array([[0, 10]], np.uint8))
+    return ["expected indices 0..9, found 0..10", "--ade20k"]
+
+
+def index_255(path):
+    write(path, np.array([[0, 255]], np.uint8))
+    return ["expected indices 0..9, found 0..255"]
+
+
+def truncated(path):
+    data = write(path).read_bytes()
+    path.write_bytes(data[:len(data) // 2])
+    return ["expected an image"]
+
+
+def chunk(kind, data):
+    """A part of a PNG file."""
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def short_head(path):
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", bytes(5)))
+    return ["expected an image"]
+
+
+def bomb(path):
+    size = struct.pack(">II", 60000, 60000) + bytes([8, 0, 0, 0, 0])
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", zlib.compress(b"")))
+    return ["expected an image"]
+
+
+FAULTS = [missing, a_song, folder, rgb, index_10, index_255, truncated, short_head, bomb]
+
+
+def assert_one_line(capsys, *words):
+    """One line on stderr, nothing on stdout."""
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("python -m gnl: ")
+    assert err.endswith("\n")
+    assert err.count("\n") == 1
+    for word in words:
+        assert word in err
+
+
+@pytest.mark.parametrize("make", FAULTS, ids=lambda make: make.__name__)
+def test_a_mistake_is_one_line_that_names_the_file_and_nothing_is_written(tmp_path, capsys, make):
+    path = tmp_path / "view.png"
+    words = make(path)
+    before = list(tmp_path.iterdir())
+    assert run("graph", path) == 2
+    assert_one_line(capsys, f"{path}: ", "found", *words)
+    assert list(tmp_path.iterdir()) == before
+
+
+def test_an_index_that_ade20k_does_not_have_is_named(tmp_path, capsys):
+    path = write(tmp_path / "view.png", np.array([[0, 151]], np.uint8))
+    assert run("graph", path, "--ade20k") == 2
+    assert_one_line(capsys, f"{path}: expected indices 0..150, found 0..151\n")
+
+
+def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path, capsys):
+    path = write(tmp_path / "view.png")
+    (tmp_path / "taken").mkdir()
+    assert run("graph", path, "--out", tmp_path / "taken") == 2
+    err = capsys.readouterr().err
+    assert err.startswith("python -m gnl: ")
+    assert err.count("\n") == 1
+    assert str(tmp_path / "taken") in err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["taken", "view.png"]
+
+
+def test_a_program_that_fails_shows_no_traceback(tmp_path):
+    finished = subprocess.run([sys.executable, "-W", "error", "-m", "gnl", "graph", tmp_path / "view.png"],
+                              capture_output=True, text=True)
+    assert finished.returncode == 2
+    assert finished.stderr.count("\n") == 1
+    assert finished.stdout == ""

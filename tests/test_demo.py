@@ -1,0 +1,223 @@
+"""The demonstration at the smallest scale: it runs, again in less time, after Ctrl-C and after a kill."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import data_gen
+from gnl import demo
+from gnl.__main__ import main
+from gnl.files import load_arrays, save_arrays
+
+FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
+SMALLEST = [f"--{name}={n}" for name, n in {"net-epochs": 1, "gcn-views": 128, "gcn-epochs": 2, "gcn-batch": 32,
+                                            "episodes": 64, "scan-starts": 2, "tests": 8}.items()]
+PICTURES = {"1-home.png", "2-view.png", "3-labels.png", "4-strip.png", "5-graph.png", "6-ranks.png", "episode.gif"}
+PARTS = ["gcn", "net", "nnql", "scan"]
+
+
+def start(out, views):
+    """The demo in a process group of its own, as a terminal starts it; a warning is an error."""
+    return subprocess.Popen(
+        [sys.executable, "-W", "error", "-u", "-m", "gnl", "demo", "--plan", FLAT, "--views", views, "--out", out,
+         *SMALLEST], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+
+def end(process):
+    """Wait for it: exit status, lines on stdout, text on stderr."""
+    try:
+        out, err = process.communicate(timeout=100)
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+    return SimpleNamespace(status=process.returncode, lines=out.splitlines(), err=err)
+
+
+def stop(process, sign, folder, part):
+    """Send a signal to the whole group, as a terminal does, once `part` is learned."""
+    while process.poll() is None and not list(folder.glob(f"learned/{part}-*.npz")):
+        time.sleep(0.01)
+    os.killpg(process.pid, sign)
+    return end(process)
+
+
+def files(folder):
+    """Bytes and time of every file, by name."""
+    return {path.relative_to(folder): (path.read_bytes(), path.stat().st_mtime_ns)
+            for path in folder.rglob("*") if path.is_file()}
+
+
+def learned(folder):
+    return {name: content for name, content in files(folder).items() if name.parts[0] == "learned"}
+
+
+def table(run):
+    """The lines of a run without times."""
+    return [re.sub(r" +[\d.]+ s$", "", line) for line in run.lines
+            if "ms a view" not in line and "the paper" not in line]
+
+
+@pytest.fixture(scope="module")
+def views(tmp_path_factory):
+    path = tmp_path_factory.mktemp("data") / "views.npz"
+    subprocess.run([sys.executable, "-m", "data_gen", "views", path, "--homes", "2", "--views", "64"], check=True,
+                   capture_output=True)
+    return path
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory, views):
+    """Four runs in one folder: stopped by Ctrl-C, by a kill, and two that were left to end."""
+    out = tmp_path_factory.mktemp("demo") / "out"
+    interrupted = stop(start(out, views), signal.SIGINT, out, "net")
+    interrupted.files = files(out)
+    killed = stop(start(out, views), signal.SIGKILL, out, "gcn")
+    killed.files = files(out)
+    first = end(start(out, views))
+    first.files = files(out)
+    second = end(start(out, views))
+    second.files = files(out)
+    return SimpleNamespace(out=out, interrupted=interrupted, killed=killed, first=first, second=second)
+
+
+def test_ctrl_c_in_the_middle_is_one_line_and_leaves_nothing_half_written(runs):
+    assert runs.interrupted.status == 130
+    assert runs.interrupted.err == "python -m gnl: interrupted; what was finished is kept\n"
+    assert [name.stem.partition("-")[0] for name in runs.interrupted.files] == ["net"]
+
+
+def test_what_was_finished_before_a_stop_is_whole_and_kept(runs):
+    assert runs.killed.status == -signal.SIGKILL
+    for stopped in (runs.interrupted, runs.killed):
+        for name, content in stopped.files.items():
+            if not name.name.startswith("."):  # what a kill cuts short has a temporary name
+                assert runs.second.files[name] == content
+                load_arrays(runs.out / name)
+
+
+def test_a_run_after_ctrl_c_and_a_kill_completes(runs):
+    assert runs.first.status == 0
+    assert runs.first.err == ""
+    assert sorted(name.stem.partition("-")[0] for name in learned(runs.out)) == PARTS
+
+
+def test_a_run_prints_at_most_25_lines(runs):
+    assert 10 <= len(runs.first.lines) <= 25
+
+
+def test_a_run_names_every_stage_and_every_method(runs):
+    heads = [line.split()[0] for line in runs.first.lines[1:]]
+    assert [head for head in heads if head in ("net", "gcn", "nnql", "scan", "test", "draw")] == [
+        "net", "gcn", "nnql", "scan", "test", "draw"]
+    assert [head for head in heads if head in ("SV", "MV", "Scan", "Ours")] == ["SV", "MV", "Scan", "Ours"]
+
+
+def test_a_run_draws_every_stage(runs):
+    folder = runs.out / "demo"
+    assert {path.name for path in folder.iterdir()} == PICTURES
+    for name in PICTURES:
+        with Image.open(folder / name) as picture:
+            picture.load()
+            assert min(picture.size) >= 100
+            assert (getattr(picture, "n_frames", 1) >= 5) == (name == "episode.gif")
+
+
+def test_a_second_run_learns_nothing_and_says_the_same(runs):
+    assert runs.second.status == 0
+    assert runs.second.err == ""
+    assert table(runs.second) == table(runs.first)
+    before, after = runs.first.files, runs.second.files
+    assert before.keys() == after.keys()
+    for name in before:
+        assert after[name][0] == before[name][0]  # pictures, too
+        assert name.parts[0] == "demo" or after[name][1] == before[name][1]
+
+
+def test_the_table_holds_accuracies_and_their_differences_in_pairs(capsys):
+    right = np.random.default_rng(0).random((3, 50, 5)) < np.array([0.4, 0.5, 0.6])[:, None, None]
+    right[:, :, 0] = right[0, :, 0]
+    methods = ("MV", "Scan", "Ours")
+    demo.print_table({name: SimpleNamespace(correct=r) for name, r in zip(methods, right, strict=True)})
+    lines = capsys.readouterr().out.splitlines()
+    last = {"SV": 100 * right[0, :, 0].mean(), "MV": 100 * right[0, :, -1].mean(),
+            "Scan": 100 * right[1, :, -1].mean(), "Ours": 100 * right[2, :, -1].mean()}
+    assert [line.split()[0] for line in lines[1:]] == list(last)
+    for line in lines[1:]:
+        name, *numbers = re.findall(r"[A-Z]\w+|[+-]?\d+\.\d", line)
+        shares, (a, b, mean, low, high) = numbers[:-5], numbers[-5:]
+        assert float(shares[-1]) == pytest.approx(last[name], abs=0.05)
+        assert len(shares) == (1 if name == "SV" else 5)
+        assert float(mean) == pytest.approx(last[a] - last[b], abs=0.051)
+        assert float(low) < float(mean) < float(high)
+
+
+def a_song(path):
+    path.write_text("la la la")
+
+
+def missing(path):
+    pass
+
+
+def folder(path):
+    path.mkdir()
+
+
+def other_arrays(path):
+    save_arrays(path, {}, weights=np.zeros(3))
+
+
+def small_views(path):
+    save_arrays(path, {}, rgb=np.zeros((8, 32, 32, 3), np.uint8), labels=np.zeros((8, 32, 32), np.uint8))
+
+
+def unlike_views(path):
+    save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.zeros((7, 64, 64), np.uint8))
+
+
+def assert_one_line(capsys, arguments, *words):
+    """Status 2 and one line on stderr."""
+    with pytest.raises(SystemExit) as exit:
+        main(["demo", *SMALLEST, *map(str, arguments)])
+    err = capsys.readouterr().err
+    assert exit.value.code == 2
+    assert err.startswith("python -m gnl: ")
+    assert err.count("\n") == 1
+    for word in words:
+        assert word in err
+
+
+@pytest.mark.parametrize("option", ["--tests 0", "--tests 1", "--noise -1", "--noise nan", "--noise 11", "--seed -1",
+                                    "--episodes 0", "--net-epochs 0", "--gcn-views 0", "--gcn-epochs 0",
+                                    "--gcn-batch 0", "--scan-starts -3"])
+def test_an_option_that_cannot_be_is_named(tmp_path, capsys, option):
+    name, value = option.split()
+    assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "v", "--out", tmp_path / "out", name, value],
+                    f"{name}: expected ", f", found {value}")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("make", [a_song, missing, folder], ids=lambda make: make.__name__)
+def test_a_plan_that_is_none_is_named(tmp_path, capsys, make):
+    make(tmp_path / "plan")
+    assert_one_line(capsys, ["--plan", tmp_path / "plan", "--views", tmp_path / "v", "--out", tmp_path / "out"],
+                    f"{tmp_path / 'plan'}: expected ")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views],
+                         ids=lambda make: make.__name__)
+def test_views_that_are_none_are_named(tmp_path, capsys, make):
+    make(tmp_path / "views")
+    assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "views", "--out", tmp_path / "out"],
+                    f"{tmp_path / 'views'}: expected ")
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,178 @@
+"""The terminal: a line a stage, one line for a mistake, and nothing more when the user has had enough."""
+
+import io
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from gnl import terminal
+from gnl.terminal import Stage, guarded, second_process
+
+ERASE = "\r\x1b[K"  # to the start of the line, clear it
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+    def screen(self):
+        """What one sees: of each line that which was written after it was last erased."""
+        return [line.rpartition(ERASE)[2] for line in self.getvalue().split("\n")]
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that is set by hand: clock.now [s]."""
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(terminal, "time", SimpleNamespace(perf_counter=lambda: clock.now))
+    return clock
+
+
+def test_where_there_is_no_terminal_only_the_end_of_a_stage_is_printed(clock):
+    stream = io.StringIO()
+    stage = Stage("net", stream)
+    clock.now += 12.0
+    stage(0.5, "loss 0.31")
+    assert stream.getvalue() == ""
+    stage.done("91% right")
+    assert stream.getvalue() == "net      " + "91% right".ljust(76) + "  12.0 s\n"
+
+
+def test_on_a_terminal_a_stage_shows_how_far_it_is_and_leaves_one_line(clock):
+    stream = Terminal()
+    stage = Stage("net", stream)
+    assert stream.screen() == ["net      ..."]
+    clock.now += 2.0
+    stage(0.25, "loss 0.31")
+    assert stream.screen() == ["net       25%     2 s, 6 s to go  loss 0.31"]
+    stage.done("91% right")
+    assert stream.screen() == ["net      " + "91% right".ljust(76) + "   2.0 s", ""]
+
+
+def test_a_live_line_changes_at_most_five_times_a_second(clock):
+    stream = Terminal()
+    stage = Stage("net", stream)
+    for i in range(1000):
+        clock.now += 0.001
+        stage((i + 1) / 1000)
+    assert 4 <= stream.getvalue().count("to go") <= 5
+
+
+def test_a_stage_of_which_nothing_is_done_names_no_time_to_go(clock):
+    stream = Terminal()
+    stage = Stage("net", stream)
+    clock.now += 1.0
+    stage(0.0)
+    assert stream.screen() == ["net      ..."]
+
+
+def test_a_stage_speaks_on_stdout(capsys):
+    Stage("net").done("91% right")
+    assert capsys.readouterr().out.startswith("net      91% right")
+
+
+def stop(error):
+    raise error
+
+
+def leave(run, *args):
+    """Exit status of a guarded run."""
+    with pytest.raises(SystemExit) as exit:
+        guarded("python -m gnl", run, *args)
+    return exit.value.code
+
+
+def test_a_run_that_ends_well_has_status_0_and_says_nothing(capsys):
+    heard = []
+    assert leave(heard.append, "hello") == 0
+    assert heard == ["hello"]
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("kind", [ValueError, OSError, FileNotFoundError])
+def test_a_mistake_is_one_line_on_stderr_and_status_2(capsys, kind):
+    assert leave(stop, kind("a.png: expected an image,\nfound\n\na song")) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("python -m gnl: a.png: expected an image, found ")
+    assert err.endswith("a song\n")
+    assert err.count("\n") == 1
+
+
+def test_an_interruption_is_one_line_on_stderr_and_status_130(capsys):
+    assert leave(stop, KeyboardInterrupt()) == 130
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err == "python -m gnl: interrupted; what was finished is kept\n"
+
+
+def test_a_fault_of_our_own_is_not_hidden():
+    with pytest.raises(KeyError):
+        guarded("python -m gnl", stop, KeyError("rgb"))
+
+
+@pytest.mark.parametrize("end", [ValueError("a mistake"), KeyboardInterrupt()], ids=["mistake", "ctrl-c"])
+def test_on_a_terminal_the_last_words_stand_on_a_line_of_their_own(monkeypatch, end):
+    stream = Terminal()
+    monkeypatch.setattr(sys, "stdout", stream)
+    monkeypatch.setattr(sys, "stderr", stream)
+
+    def run():
+        Stage("net").note("25%")
+        raise end
+
+    leave(run)
+    *_, words, after = stream.screen()
+    assert words.startswith("python -m gnl: ")
+    assert after == ""
+
+
+def test_the_second_process_works_beside_this_one_and_ends_with_the_block():
+    with second_process() as helper:
+        (process,) = multiprocessing.active_children()
+        assert helper.apply(os.getpid) == process.pid != os.getpid()
+    process.join(10)
+    assert not process.is_alive()
+
+
+def test_ctrl_c_reaches_this_process_alone_from_the_moment_the_second_one_starts():
+    here = signal.getsignal(signal.SIGINT)
+    with second_process() as helper:
+        (process,) = multiprocessing.active_children()
+        os.kill(process.pid, signal.SIGINT)
+        assert helper.apply(os.getpid) == process.pid  # not another one, started in its place
+    assert signal.getsignal(signal.SIGINT) == here
+
+
+@pytest.mark.parametrize(("sign", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-c", "kill"])
+def test_who_stops_this_process_stops_the_second_one_too(sign, status):
+    code = """if True:
+        import multiprocessing, time
+        from gnl.terminal import guarded, second_process
+
+        def run():
+            with second_process() as helper:
+                helper.apply(int)  # it is up
+                work = helper.apply_async(time.sleep, (20,))
+                print(multiprocessing.active_children()[0].pid, flush=True)
+                work.get()
+
+        guarded("test", run)"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, start_new_session=True) as process:
+        second = int(process.stdout.readline())
+        process.send_signal(sign)
+        status_seen, lines = process.wait(10), process.stderr.read
+        try:
+            with pytest.raises(ProcessLookupError):
+                os.kill(second, 0)
+        finally:
+            if status_seen != status:
+                os.killpg(process.pid, signal.SIGKILL)
+        assert status_seen == status
+        assert "Traceback" not in lines()
