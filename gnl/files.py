@@ -43,9 +43,11 @@ def save_arrays(path, made_by, **arrays):
 
 def load_arrays(path):
     """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError if it is none."""
+    if not Path(path).exists():
+        raise ValueError(f"{path}: expected a file of arrays, found nothing")
     try:
         if not zipfile.is_zipfile(path):
-            raise ValueError("no archive" if Path(path).exists() else "nothing")
+            raise ValueError("no archive")
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop("header").tobytes())
