@@ -31,7 +31,7 @@ class Scale:
     gcn_epochs: int = 25  # 100
     gcn_batch: int = 128  # 32; large batches and steps learn most in a short time
     episodes: int = 1200  # 10,000
-    scan_starts: int = 60
+    scan_starts: int = 120
     tests: int = 320  # 100
 
 
@@ -86,7 +86,7 @@ def play(args, scale, helper):
     stage.done(f"{scale.episodes} episodes, {sum(map(len, store.values))} state-action pairs remembered")
     stage = Stage("scan")
     sequence = scan.get()
-    stage.done(f"meanwhile, of all action sequences the best: {', '.join(ACTIONS[a] for a in sequence)}")
+    stage.done(f"meanwhile all action sequences raced; the best: {', '.join(ACTIONS[a] for a in sequence)}")
 
     stage = Stage("test")
     starts = world.free_poses(scale.tests, rng(args, 5))

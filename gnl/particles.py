@@ -87,10 +87,3 @@ class ParticleFilter:
             for of_particle in (self.x, self.y, self.theta, self.place):
                 of_particle[b] = of_particle[b][drawn]
         self.weight = np.full((B, M), 1 / M, np.float32)
-
-    def fork(self, n):
-        """Each belief n times, one beside the other, to try n actions from it; shares the random numbers."""
-        copy = object.__new__(ParticleFilter)
-        copy.__dict__ = {name: np.repeat(value, n, axis=0) if isinstance(value, np.ndarray) else value
-                         for name, value in self.__dict__.items()}
-        return copy

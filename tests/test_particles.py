@@ -202,19 +202,6 @@ def test_the_belief_sums_to_one_all_along():
         np.testing.assert_allclose(belief.belief(K).sum(1), 1, rtol=1e-5)
 
 
-def test_a_fork_is_the_belief_n_times_and_leaves_its_parent_untouched():
-    parent = new_filter(random_likelihood(0, 2))
-    before = state(parent)
-    fork = parent.fork(3)
-    for name, value in before.items():
-        np.testing.assert_array_equal(getattr(fork, name), value[[0, 0, 0, 1, 1, 1]])
-    fork.predict(np.array([[0.5, 0.2]] * 6))
-    fork.weigh(random_likelihood(1, 6))
-    fork.resample()
-    for name, value in before.items():
-        np.testing.assert_array_equal(getattr(parent, name), value)
-
-
 def life(likelihood, seed, resample):
     B, belief = len(likelihood), new_filter(likelihood, seed)
     for step in range(3):

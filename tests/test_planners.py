@@ -79,7 +79,6 @@ def test_all_sequences_are_all_and_each_once(length):
     sequences = planners.all_sequences(length)
     assert sequences.shape == (N_ACTIONS ** length, length)
     assert {tuple(row) for row in sequences.tolist()} == set(itertools.product(range(N_ACTIONS), repeat=length))
-    # The order of a tree in which the last action varies fastest: best_sequence counts on it.
     assert sequences.tolist() == sorted(sequences.tolist())
 
 
