@@ -4,6 +4,7 @@ import multiprocessing
 import signal
 import sys
 import time
+from contextlib import contextmanager
 
 CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
 
@@ -40,14 +41,19 @@ class Stage:
         self.stream.flush()
 
 
+@contextmanager
 def second_process():
     """A pool of one process beside this one, for use in a with statement; whatever ends this one ends it too."""
     here = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C is for the first process to handle
     try:
         # Spawned, not forked: it must not inherit half a computation.
-        return multiprocessing.get_context("spawn").Pool(1, leave_tidily)
+        pool = multiprocessing.get_context("spawn").Pool(1, leave_tidily)
     finally:
         signal.signal(signal.SIGINT, here)
+    with pool:  # ends it at once, if this process fails
+        yield pool
+        pool.close()
+        pool.join()
 
 
 def leave_tidily():
