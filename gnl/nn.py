@@ -15,6 +15,7 @@ def conv_forward(x, w, b, stride=1):
         out[i, j] = b + sum over u, v in 0..2 of x[stride i + u - 1, stride j + v - 1] w[u, v]
 
     x (B, H, W, C), w (3, 3, C, F), b (F,) -> out (B, H / stride, W / stride, F); cache: patches, w, stride
+    H and W are multiples of the stride
     """
     B, H, W, C = x.shape
     padded = np.zeros((B, H + 2, W + 2, C), x.dtype)

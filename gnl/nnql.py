@@ -97,9 +97,10 @@ class NNQL:
         Pairs are only ever added, so those of the past are the first ones; a later pair is not available (N/A).
         """
         if not 0 <= checkpoint < len(self.log):
-            raise ValueError(f"checkpoint: expected 0..{len(self.log) - 1}, found {checkpoint}")
+            there = f"0..{len(self.log) - 1}" if self.log else "one to be there"
+            raise ValueError(f"checkpoint: expected {there}, found {checkpoint}")
         past = object.__new__(NNQL)
-        past.__dict__ = {**self.__dict__, "values": [], "learn": _past_cannot_learn}
+        past.__dict__ = {**self.__dict__, "values": [], "learn": _past_is_past, "checkpoint": _past_is_past}
         for a in range(len(self.index)):
             values = np.empty(self.log[checkpoint][a][0])
             for entry in self.log[:checkpoint + 1]:
@@ -124,8 +125,9 @@ class NNQL:
     def load(cls, path, **settings):
         """The store of a file of `save`, and what made it."""
         arrays, made_by = load_arrays(path)
-        n_actions = sum(name.startswith("states") for name in arrays)
-        if not n_actions:
+        kinds = ("states", "values", "born", "n_changed", "changed", "changed_to")
+        n_actions = len(arrays) // len(kinds)
+        if not n_actions or set(arrays) != {f"{kind}{a}" for kind in kinds for a in range(n_actions)}:
             raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
         store = cls(arrays["states0"].shape[1], n_actions, **settings)
         entries = []
@@ -141,5 +143,5 @@ class NNQL:
         return store, made_by
 
 
-def _past_cannot_learn(*_):
+def _past_is_past(*_):
     raise ValueError("learn: expected the present store, found one at a past checkpoint")

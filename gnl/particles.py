@@ -20,7 +20,7 @@ FLOOR = 1e-3  # CHOICE: likelihood of a place that the classifier rules out
 class ParticleFilter:
     """B beliefs over the poses of a home, one for each of B robots side by side.
 
-    All B filters share their random numbers: within a filter particles are independent, and that is all it needs.
+    The filters share the noise of their motion: within a filter particles are independent, and that is all it needs.
     """
 
     def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES):

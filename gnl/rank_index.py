@@ -19,7 +19,7 @@ from functools import cache
 
 import numpy as np
 
-from gnl.kdtree import check_count, check_points, lengths, pack_answers
+from .kdtree import check_count, check_points, lengths, pack_answers
 
 SMALL = 2000  # points; up to here one bucket for all is faster than one per first place
 DEPTHS = (1, 4, 16)  # tried in turn before all buckets are opened; any choice gives the same answers

@@ -96,9 +96,9 @@ def test_a_little_training_halves_the_loss(views):
                  progress=lambda share, loss: losses.append((share, loss)))
     assert [share for share, _ in losses] == [(i + 1) / 60 for i in range(60)]
     loss = [loss for _, loss in losses]
-    assert np.mean(loss[-8:]) < 0.5 * np.mean(loss[:4])  # measured: 0.36
+    assert np.mean(loss[-8:]) < 0.5 * np.mean(loss[:4])  # measured: 0.25 to 0.31 with 4 seeds
     right, iou = segnet.accuracy(segnet.predict(params, views[0]), views[1])
-    assert 0.6 < right <= 1  # measured: 0.77
+    assert 0.6 < right <= 1  # measured: 0.75 to 0.83
     assert 0.1 < iou < right
 
 
