@@ -1,12 +1,13 @@
 """The demonstration: every stage of the paper learns from scratch, then a robot finds out where it is."""
 
+import copy
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from . import draw, episode, gcn, learned, planners, replay, segnet
-from .camera import render
+from .camera import render, true_labels
 from .compare import paired_difference
 from .files import load_arrays
 from .photo import check_noise
@@ -148,24 +149,25 @@ def print_table(records):
 def print_costs(senses):
     """Milliseconds a view of each stage, episodes side by side."""
     cost = {stage: 1000 * seconds / senses.views for stage, seconds in senses.seconds.items()}
-    print(f"a view costs {sum(cost.values()):.1f} ms (the paper's: graph 18, GCN 0.10, planning 10 ms):")
+    print(f"a view of 64 x 64, {episode.SIDE_BY_SIDE} at once, costs {sum(cost.values()):.1f} ms "
+          "(the paper: graph 18, GCN 0.10, planning 10):")
     print("  " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
 
 
 def draw_stages(folder, world, grid, senses, starts, stream):
-    """A picture of the home, and of each stage for the start whose view has most to tell."""
-    graphs = senses.look_around(starts, stream)
-    best = np.diff(graphs.starts).argmax()
+    """A picture of the home, and of each stage for the start from which there is most to see."""
+    best = np.diff(scene_graph(true_labels(world, starts, segnet.SIZE_PX)).starts).argmax()
     pose = starts[best:best + 1]
-    large, _ = render(world, pose, stream, noise=senses.noise)
+    large, _ = render(world, pose, copy.deepcopy(stream), noise=senses.noise)  # the same light in both sizes
     small, true = render(world, pose, stream, segnet.SIZE_PX, senses.noise)
     labels = true if senses.net is None else segnet.predict(senses.net, small)
-    graph = senses.timed("graph", scene_graph, labels)
+    graph = scene_graph(labels)
     values = reciprocal_ranks(senses.gcn.scores(graph))[0]
     strip = [part[0] for part in cast(world, pose).dense()]
     pictures = {
         "1-home": draw.home(world, 900, grid, starts), "2-view": draw.view(large[0], 512),
-        "3-labels": draw.labels(labels[0], 512), "4-strip": draw.strip(world, strip, 512, 256),
+        "3-labels": draw.sheet([draw.labels(labels[0], 384), draw.labels(true[0], 384)], ["the net", "the truth"]),
+        "4-strip": draw.strip(world, strip, 512, 256),
         "5-graph": draw.graph(graph, draw.view(large[0], 512)),
         "6-ranks": draw.ranks(grid, values, int(grid.place_of(pose)[0]), 10, 320)}
     for name, picture in pictures.items():

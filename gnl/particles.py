@@ -31,7 +31,7 @@ class ParticleFilter:
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
         self.grid, self.rng = grid, rng
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
-        # In k blocks, one a place: were they to take turns, equal steps along them would miss the same place each time.
+        # In k blocks, one a place: systematic resampling takes every n-th particle, and would alias with turns.
         place = best.take(np.arange(M) * k // M, 1)
         low = grid.corner_of(place).astype(np.float32)
         spread = rng.random((M, 3), np.float32) * np.float32([grid.cell_m, grid.cell_m, 2 * np.pi / grid.n_bearings])
