@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import demo, label_image
+from . import demo, draw_graph
 from .terminal import guarded
 
 
@@ -16,8 +16,8 @@ def main(argv=None):
     demo.add_arguments(command)
     command.set_defaults(run=demo.run)
     command = commands.add_parser("graph", help="print and draw the scene graph of a label image of your own")
-    label_image.add_arguments(command)
-    command.set_defaults(run=label_image.run)
+    draw_graph.add_arguments(command)
+    command.set_defaults(run=draw_graph.run)
     args = parser.parse_args(argv)
     guarded("python -m gnl", args.run, args)
 

@@ -15,7 +15,7 @@ MODULES = {f"{path.parent.name}.{path.stem}": path for path in ROOT.glob("*/*.py
 GNL = {name for name in MODULES if name.startswith("gnl.")}
 TOP = {"setup.cfg", "pyproject.toml", "Makefile", "README.md", "LICENSE", "gnl", "data_gen", "tutorials", "tests",
        ".ci", ".gitignore"}
-MAY_DRAW = {f"gnl.{name}" for name in ("demo", "replay", "label_image", "experiment", "report", "__main__", "draw")}
+MAY_DRAW = {f"gnl.{name}" for name in ("demo", "replay", "draw_graph", "experiment", "report", "__main__", "draw")}
 LONGEST = 250
 OPEN_POINTS = ROOT / "tutorials" / "open_points.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "tutorials").glob("*.md"))]

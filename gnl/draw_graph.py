@@ -1,4 +1,4 @@
-"""Scene graphs of label images from elsewhere: any picture of class indices, ours or ADE20K's."""
+"""Scene graphs of label images from elsewhere, printed and drawn: any picture of class indices, ours or ADE20K's."""
 
 from pathlib import Path
 
