@@ -16,7 +16,7 @@ from .ranks import reciprocal_ranks
 from .robot import ACTIONS, Robot
 from .scene_graph import scene_graph
 from .strip import cast
-from .terminal import Stage, second_process
+from .terminal import Stage, processes
 from .world import World
 
 COMPARED = ("MV", "SV"), ("Scan", "MV"), ("Ours", "MV"), ("Ours", "Scan")
@@ -50,12 +50,12 @@ def add_arguments(parser):
 def run(args):
     """Learn what is not learned yet, test the methods on the same starts, draw; at most 25 lines of output."""
     check(args)
-    with second_process() as helper:
+    with processes(1) as helper:
         play(args, Scale(**{name: getattr(args, name) for name in vars(Scale())}), helper)
 
 
 def play(args, scale, helper):
-    """The stages one by one; `helper` is a pool of one process for the other core."""
+    """The stages one by one; `helper` is an executor of one process for the other core."""
     out, world = Path(args.out), World.load(args.plan)
     grid, robot, parts = PlaceGrid(world), Robot(world), out / "learned"
     x0, y0, x1, y1 = world.bounds
@@ -82,11 +82,11 @@ def play(args, scale, helper):
 
     stage = Stage("nnql")
     settings |= {"gcn": learned.digest([scale.gcn_views, how])}
-    scan = helper.apply_async(learned.fixed_scan, (parts, senses, grid, scale.scan_starts, args.seed, settings))
+    scan = learned.fixed_scan(parts, senses, grid, scale.scan_starts, args.seed, settings, helper)
     store = learned.q_values(parts, senses, robot, grid, scale.episodes, args.seed, settings, stage)
     stage.done(f"{scale.episodes} episodes, {sum(map(len, store.values))} state-action pairs remembered")
     stage = Stage("scan")
-    sequence = scan.get()
+    sequence = scan()
     stage.done(f"meanwhile all action sequences raced; the best: {', '.join(ACTIONS[a] for a in sequence)}")
 
     stage = Stage("test")

@@ -22,9 +22,14 @@ def digest(settings):
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()[:8]
 
 
+def path_of(folder, name, settings):
+    """The file of the part `name` made with `settings`."""
+    return Path(folder) / f"{name}-{digest(settings)}.npz"
+
+
 def kept(folder, name, settings, load, learn):
     """load(path) of the part `name` made with `settings`, or learn(path), which must write it."""
-    path = Path(folder) / f"{name}-{digest(settings)}.npz"
+    path = path_of(folder, name, settings)
     return load(path)[0] if path.exists() else learn(path)
 
 
@@ -45,7 +50,7 @@ def segmentation_net(folder, views, views_made_by, epochs, seed, stage):
 def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stage, **how):
     """GCN trained on `n_views` views from random free poses, `how` as for gcn.train.
 
-    `settings` names what `senses` is made of; `helper` is a pool whose process looks at half of the views.
+    `settings` names what `senses` is made of; `helper` is an executor whose process looks at half of the views.
     """
     settings = {**settings, "views": n_views, "seed": seed, **how}
 
@@ -53,9 +58,9 @@ def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stag
         rng = np.random.default_rng(seed)
         poses = senses.world.free_poses(n_views, rng)
         mine, others = poses[:n_views // 2], poses[n_views // 2:]
-        theirs = helper.apply_async(senses.look_around, (others, np.random.default_rng([seed, 1])))
+        theirs = helper.submit(senses.look_around, others, np.random.default_rng([seed, 1]))
         graphs = senses.look_around(mine, rng, lambda share: stage(0.5 * share, "looking around"))
-        graphs = join([graphs, theirs.get()])
+        graphs = join([graphs, theirs.result()])
         network = gcn.GCN(grid.n_places, rng)
         gcn.train(network, graphs, grid.place_of(poses), rng, **how,
                   progress=lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}"))
@@ -78,15 +83,15 @@ def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):
     return kept(folder, "nnql", settings, nnql.NNQL.load, learn)
 
 
-def fixed_scan(folder, senses, grid, n_starts, seed, settings):
-    """Best fixed action sequence over `n_starts` random starts."""
+def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
+    """Best fixed action sequence over `n_starts` random starts: a function that waits till `helper` has found it."""
     settings = {**settings, "starts": n_starts, "seed": seed}
+    known = path_of(folder, "scan", settings).exists()
+    sought = None if known else helper.submit(race, senses, grid, n_starts, seed)
 
     def learn(path):
-        starts = senses.world.free_poses(n_starts, np.random.default_rng(seed))
-        sequence = episode.best_sequence(senses, Robot(senses.world), grid, starts, seed)
-        save_arrays(path, settings, sequence=sequence)
-        return sequence
+        save_arrays(path, settings, sequence=sought.result())
+        return sought.result()
 
     def load(path):
         arrays, made_by = load_arrays(path)
@@ -94,7 +99,13 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings):
             raise ValueError(f"{path}: expected an action sequence, found {', '.join(sorted(arrays))}")
         return arrays["sequence"], made_by
 
-    return kept(folder, "scan", settings, load, learn)
+    return lambda: kept(folder, "scan", settings, load, learn)
+
+
+def race(senses, grid, n_starts, seed):
+    """`episode.best_sequence` from random starts."""
+    starts = senses.world.free_poses(n_starts, np.random.default_rng(seed))
+    return episode.best_sequence(senses, Robot(senses.world), grid, starts, seed)
 
 
 def top_places(network, graphs, places):

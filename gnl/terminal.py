@@ -1,9 +1,12 @@
 """The terminal: one line for each stage of a run, one clear line for what cannot be done."""
 
 import multiprocessing
+import os
 import signal
 import sys
+import threading
 import time
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager
 
 CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
@@ -42,33 +45,49 @@ class Stage:
 
 
 @contextmanager
-def second_process():
-    """A pool of one process beside this one, for use in a with statement; whatever ends this one ends it too."""
+def processes(n):
+    """An executor of n processes beside this one, for use in a with statement; whatever ends this one ends them too.
+
+    They only compute. Files are written by this process, so that nothing is left behind where another one is ended.
+    """
     here = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C is for the first process to handle
     try:
-        # Spawned, not forked: it must not inherit half a computation.
-        pool = multiprocessing.get_context("spawn").Pool(1, leave_tidily)
+        # Spawned, not forked: they must not inherit half a computation.
+        pool = ProcessPoolExecutor(n, multiprocessing.get_context("spawn"), _end_with_the_first)
+        for _ in range(n):
+            pool.submit(int)  # a process is started when there is work and none is free
     finally:
         signal.signal(signal.SIGINT, here)
-    with pool:  # ends it at once, if this process fails
+    try:
         yield pool
-        pool.close()
-        pool.join()
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
-def leave_tidily():
-    """Let a kill end this process through its with statements, so that nothing half-written stays behind."""
-    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
+def _end_with_the_first():
+    """Let a process end when the one that started it is no more, even by kill -9."""
+    def watch():
+        multiprocessing.parent_process().join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def guarded(program, run, *args):
     """run(*args) for the command line: a user's mistake is one line on stderr and exit status 2, no traceback."""
-    leave_tidily()
+    # A kill, too, ends the run through its with statements.
+    signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
     status, line = 0, None
     try:
         run(*args)
     except (ValueError, OSError) as error:
         status, line = 2, str(error).replace("\n", " ")
+    except BrokenExecutor:
+        status, line = 1, "a process beside this one was ended from outside; what was finished is kept"
     except KeyboardInterrupt:
         status, line = 128 + signal.SIGINT, "interrupted; what was finished is kept"
     if status:
