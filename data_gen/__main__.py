@@ -3,10 +3,12 @@
 import argparse
 from pathlib import Path
 
+from gnl.experiment import Cell
 from gnl.files import load_arrays, save_arrays
-from gnl.terminal import Stage, guarded
+from gnl.terminal import Stage, guarded, processes
 
 from .rooms import make_home
+from .starts import starts_of
 from .views import training_views
 
 
@@ -26,6 +28,26 @@ def views(args):
     stage.done(f"{args.homes} furnished homes drawn, {args.views} views rendered to learn from")
 
 
+def starts(args):
+    """Start poses of cells of Table I, of those that are not there yet."""
+    sizes = {"training": args.training, "tests": args.tests, "validation": args.validation}
+    for name, size in (*sizes.items(), ("jobs", args.jobs)):
+        if size < 1:
+            raise ValueError(f"--{name}: expected at least 1, found {size}")
+    cells = [Cell(int(world), float(t_xy), int(t_theta), int(seed)) for world, t_xy, t_theta, seed in args.cell]
+    files = {cell: Path(args.folder) / f"starts-{cell.name}.npz" for cell in cells}
+    todo = [cell for cell, path in files.items() if not (path.exists() and load_arrays(path)[1] == sizes)]
+    if not todo:
+        return
+    stage, homes = Stage("starts"), {world: make_home(world) for world in {cell.world for cell in todo}}
+    with processes(args.jobs) as pool:
+        drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
+        for i, (cell, poses) in enumerate(zip(todo, drawn, strict=True)):
+            save_arrays(files[cell], sizes, **poses.result())
+            stage((i + 1) / len(todo))
+    stage.done(f"{len(todo)} gaps between where one learns and where one is tested")
+
+
 def main(argv=None):
     """Parse the command line and run; exit status 2 and one line for what cannot be done."""
     parser = argparse.ArgumentParser(prog="python -m data_gen", description=__doc__.partition(": ")[2])
@@ -42,6 +64,15 @@ def main(argv=None):
     command.add_argument("--seed", type=int, default=0)
     command.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
     command.set_defaults(run=views)
+    command = commands.add_parser("starts", help="draw start poses with a gap between training and tests")
+    command.add_argument("folder", help="where to write them, a file for each cell")
+    command.add_argument("--cell", nargs=4, action="append", required=True, metavar=("WORLD", "M", "DEG", "SEED"),
+                         help="seed of the home, T_xy, T_theta, seed; may be repeated")
+    command.add_argument("--training", type=int, default=10_000)
+    command.add_argument("--tests", type=int, default=100)
+    command.add_argument("--validation", type=int, default=10)
+    command.add_argument("--jobs", type=int, default=1)
+    command.set_defaults(run=starts)
     args = parser.parse_args(argv)
     guarded("python -m data_gen", args.run, args)
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import demo, draw_graph
+from . import demo, draw_graph, report, table
 from .terminal import guarded
 
 
@@ -18,6 +18,12 @@ def main(argv=None):
     command = commands.add_parser("graph", help="print and draw the scene graph of a label image of your own")
     draw_graph.add_arguments(command)
     command.set_defaults(run=draw_graph.run)
+    command = commands.add_parser("table", help="the paper's Table I: every gap, world and method")
+    table.add_arguments(command)
+    command.set_defaults(run=table.run)
+    command = commands.add_parser("report", help="the table as Markdown and pictures, with intervals")
+    report.add_arguments(command)
+    command.set_defaults(run=report.run)
     args = parser.parse_args(argv)
     guarded("python -m gnl", args.run, args)
 

@@ -1,13 +1,16 @@
-"""Comparing two methods that ran on the same episodes: differences in pairs, with intervals.
+"""Comparing methods that ran on the same episodes: differences in pairs, with intervals.
 
     d_i = right_i(A) - right_i(B) in {-1, 0, 1},   interval = mean(d) +- 1.96 std(d) / sqrt(n)
 
-Pairs share start, noise and particles, so d varies far less than the difference of two independent percentages.
+Pairs share start, noise and particles, so d varies far less than the difference of two independent percentages. Over
+many cells the cells are what varies, too: the bootstrap draws whole cells (clusters), not episodes.
 """
 
 import numpy as np
+from scipy.stats import binomtest
 
-Z95 = 1.959964  # 97.5 % point of the standard normal
+Z95, Z80 = 1.959964, 0.841621  # 97.5 % and 80 % points of the standard normal
+RESAMPLED = 10_000
 
 
 def paired_difference(a, b):
@@ -18,3 +21,35 @@ def paired_difference(a, b):
     d = a - b
     half = Z95 * d.std(ddof=1) / np.sqrt(len(d))
     return d.mean(), d.mean() - half, d.mean() + half
+
+
+def over_cells(differences, rng):
+    """Mean over cells and its 95 % interval by a bootstrap of whole cells: (C,) mean of each -> mean, low, high.
+
+    A cell is drawn with all its episodes, for they share a home, a gap and what was learned there.
+    """
+    d = np.asarray(differences, float)
+    if d.ndim != 1 or len(d) < 1:
+        raise ValueError(f"differences: expected one for each cell, found shape {d.shape}")
+    means = d[rng.integers(len(d), size=(RESAMPLED, len(d)))].mean(1)
+    return d.mean(), *np.percentile(means, [2.5, 97.5])
+
+
+def mcnemar(a, b):
+    """Exact two-sided p that A and B are right equally often, from the pairs in which they differ (McNemar 1947).
+
+        p = P(|X - n/2| >= |n_A - n/2|),   X ~ Binomial(n, 1/2),   n = n_A + n_B
+
+    n_A, n_B : pairs in which A alone, B alone was right
+    """
+    a, b = np.asarray(a, bool), np.asarray(b, bool)
+    n_a, n_b = int((a & ~b).sum()), int((b & ~a).sum())
+    return binomtest(n_a, n_a + n_b).pvalue if n_a + n_b else 1.0
+
+
+def episodes_needed(difference, std):
+    """Pairs that show a true difference at 95 % in 80 % of all experiments: ((1.96 + 0.84) std / difference)^2.
+
+    std : standard deviation of d over pairs; of two unpaired methods of p and q right sqrt(p (1 - p) + q (1 - q))
+    """
+    return int(np.ceil(((Z95 + Z80) * std / difference) ** 2))

@@ -7,6 +7,7 @@ gives an answer: the place that most of the belief lies in.
 """
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -62,6 +63,35 @@ class Senses:
         return result
 
 
+# What the paper leaves open in an episode: each of these is one way to close it, and Rules says which holds.
+
+def probability(scores):
+    """Likelihood of each place given a view: the classifier's probability and a floor, (B, K)."""
+    return softmax(scores) + FLOOR  # CHOICE: the paper does not say how a view weighs a particle
+
+
+def view_ranks(scores, _pooled, _actions):
+    """State: the reciprocal ranks of the latest view, (B, K)."""
+    return reciprocal_ranks(scores)
+
+
+def every_step(right, _belief, _done):
+    """Reward after every step: +1 for a right answer, -1 for a wrong one, (B,)."""
+    return np.where(right, 1.0, -1.0)  # CHOICE: the reward comes after every step; the text also calls it sparse.
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How an episode goes."""
+
+    length: int = LENGTH
+    likelihood: Callable = probability
+    state: Callable = view_ranks
+    reward: Callable = every_step
+    # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
+    pooling: str = "sum"
+
+
 @dataclass(frozen=True)
 class Record:
     """What B episodes were: T looks each, T = 1 + number of actions."""
@@ -78,91 +108,98 @@ class Record:
         return self.answers == self.places
 
 
-def run(senses, robot, grid, plan, starts, seed, length=LENGTH, learner=None, watch=None):
+def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
     """Run one episode from each of the poses `starts` (B, 3); returns a Record.
 
     The streams of appearance, motion, filter and exploration are independent children of `seed`. They are drawn
     alike in every step, so two planners see the same start, noise and particles until their actions differ.
-    learner : an NNQL that learns from every step;  watch(step, **what happened) is called after every look
+    watch(step, **what happened) is called after every look: that is where a learner learns
     """
+    rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
     poses, B = np.array(starts, float), len(starts)
-    scores = senses.scores(poses, appearance)
-    belief = senses.timed("filter", ParticleFilter, grid, likelihood(scores), filtering)
-    kept, states = {"poses": [], "actions": [], "answers": [], "places": [], "belief": []}, None
-    for step in range(length + 1):
+    kept, states, actions, belief = {name: [] for name in Record.__dataclass_fields__}, None, None, None
+    for step in range(rules.length + 1):
         if step:
             actions = senses.timed("plan", plan, step - 1, states, exploring)
             if actions is None:
                 break
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
-            scores = senses.scores(poses, appearance)
-            senses.timed("filter", _update, belief, odometry, likelihood(scores))
             kept["actions"].append(actions)
-        seen, states = states, senses.timed("ranks", reciprocal_ranks, scores)
-        pooled = senses.timed("filter", belief.belief, grid.n_places)
-        # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
+        scores = senses.scores(poses, appearance)
+        fit = rules.likelihood(scores)
+        if belief:
+            senses.timed("filter", _update, belief, odometry, fit)
+        else:
+            belief = senses.timed("filter", ParticleFilter, grid, fit, filtering)
+        pooled = senses.timed("filter", belief.belief, grid.n_places, rules.pooling)
+        seen, states = states, senses.timed("ranks", rules.state, scores, pooled, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
-        if learner and step:
-            # CHOICE: the reward comes after every step; the text also calls it sparse.
-            reward = np.where(answers == places, 1.0, -1.0)
-            senses.timed("plan", learner.learn, seen, actions, reward, states, np.full(B, step == length))
-        for name, value in (("poses", poses), ("answers", answers), ("places", places),
-                            ("belief", pooled[np.arange(B), places])):
+        in_place = pooled[np.arange(B), places]
+        for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", in_place)):
             kept[name].append(value)
         if watch:
-            watch(step, poses=poses, scores=scores, states=states, filter=belief, pooled=pooled)
+            watch(step, poses=poses, scores=scores, filter=belief, pooled=pooled, seen=seen, actions=actions,
+                  states=states, right=answers == places, belief=in_place)
     return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
 
 
 def run_all(senses, robot, grid, plan, starts, seed, **options):
-    """`run` for any number of starts, SIDE_BY_SIDE at a time, each group with a seed of its own; one Record."""
-    groups = [starts[i:i + SIDE_BY_SIDE] for i in range(0, len(starts), SIDE_BY_SIDE)]
+    """`run` for any number of starts, some side by side, each group with a seed of its own; one Record."""
+    groups = side_by_side(starts)
     records = [run(senses, robot, grid, plan, group, child, **options)
                for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True)]
     return Record(*(np.concatenate([getattr(r, name) for r in records]) for name in Record.__dataclass_fields__))
 
 
-def likelihood(scores):
-    """Likelihood of each place given a view: the classifier's probability and a floor, (B, K)."""
-    return softmax(scores) + FLOOR  # CHOICE: the paper does not say how a view weighs a particle
+def side_by_side(starts):
+    """The starts (n, 3) in as few groups of at most SIDE_BY_SIDE as there can be, of equal size or nearly so."""
+    return np.array_split(starts, -(-len(starts) // SIDE_BY_SIDE))
 
 
-def train_nnql(senses, robot, grid, free_poses, n_episodes, seed, checkpoint_every=1000, progress=None):
-    """Learn Q-values in n_episodes episodes from random starts; returns the NNQL with its checkpoints.
+def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1000, progress=None, store=None):
+    """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    free_poses(n, rng) draws starts; progress(share done, recent share of right answers)
+    A checkpoint is taken when the robots that pass it, side by side, have come to their ends.
+    progress(share done, recent share of right answers);  store : an empty NNQL of other settings
     """
-    learner = nnql.NNQL(grid.n_places, planners.N_ACTIONS)
-    start_rng = np.random.default_rng(_seed(seed))
-    right = []
-    for first, child in zip(range(0, n_episodes, SIDE_BY_SIDE),
-                            _seed(seed).spawn(-(-n_episodes // SIDE_BY_SIDE)), strict=True):
-        episodes = np.arange(first, min(first + SIDE_BY_SIDE, n_episodes))
-        plan = planners.explore(learner, nnql.epsilon(episodes))
-        record = run(senses, robot, grid, plan, free_poses(len(episodes), start_rng), child, learner=learner)
-        right.append(record.correct[:, -1].mean())
-        while (len(learner.log) + 1) * checkpoint_every <= episodes[-1] + 1:
-            learner.checkpoint()
+    rules = rules or Rules()
+    store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
+
+    def learn(step, seen, actions, states, right, belief, **_):
+        if step:
+            done = np.full(len(actions), step == rules.length)
+            senses.timed("learn", store.learn, seen, actions, rules.reward(right, belief, done), states, done)
+
+    groups, done, recent = side_by_side(starts), 0, []
+    for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True):
+        episodes = np.arange(done, done + len(group))
+        plan = planners.explore(store, nnql.epsilon(episodes))
+        record = run(senses, robot, grid, plan, group, child, rules, learn)
+        done += len(group)
+        while (len(store.log) + 1) * checkpoint_every <= done:
+            store.checkpoint()
+        recent = [*recent[-9:], record.correct[:, -1].mean()]
         if progress:
-            progress((episodes[-1] + 1) / n_episodes, np.mean(right[-10:]))
-    return learner
+            progress(done / len(starts), np.mean(recent))
+    return store
 
 
-def best_sequence(senses, robot, grid, starts, seed, length=LENGTH):
+def best_sequence(senses, robot, grid, starts, seed, rules=None):
     """The fixed action sequence that leaves most belief in the true place, over `starts` (n, 3): (L,).
 
-    Of 81 sequences the luckiest looks best, so they race: after each round the best third goes on, from twice as many
+    Of 41 sequences the luckiest looks best, so they race: after each round the best third goes on, from twice as many
     new starts. All runs of a round see the same starts and the same noise.
     """
-    sequences, n_rounds, first = planners.all_sequences(length), length, 0
+    length = (rules or Rules()).length
+    sequences, n_rounds, first = planners.sequences(length), length, 0
     total = np.zeros(len(sequences))
     for rank, child in enumerate(_seed(seed).spawn(n_rounds)):
         size = max(1, len(starts) * 2 ** rank // (2 ** n_rounds - 1))
         part = starts[np.arange(first, first + size) % len(starts)]
-        total += [run_all(senses, robot, grid, planners.scan(sequence), part, child, length=length).belief[:, -1].sum()
+        total += [run_all(senses, robot, grid, planners.scan(sequence), part, child, rules=rules).belief[:, -1].sum()
                   for sequence in sequences]
-        best = np.argsort(-total, kind="stable")[:len(total) // planners.N_ACTIONS]
+        best = np.argsort(-total, kind="stable")[:-(-len(total) // 3)]
         sequences, total, first = sequences[best], total[best], first + size
     return sequences[0]
 

@@ -6,12 +6,14 @@ settings make another file and never a wrong answer.
 
 import hashlib
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from . import episode, gcn, nnql, segnet
 from .files import load_arrays, save_arrays
+from .places import PlaceGrid
 from .ranks import ranks
 from .robot import Robot
 from .scene_graph import join
@@ -55,19 +57,40 @@ def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stag
     settings = {**settings, "views": n_views, "seed": seed, **how}
 
     def learn(path):
-        rng = np.random.default_rng(seed)
-        poses = senses.world.free_poses(n_views, rng)
-        mine, others = poses[:n_views // 2], poses[n_views // 2:]
-        theirs = helper.submit(senses.look_around, others, np.random.default_rng([seed, 1]))
-        graphs = senses.look_around(mine, rng, lambda share: stage(0.5 * share, "looking around"))
-        graphs = join([graphs, theirs.result()])
-        network = gcn.GCN(grid.n_places, rng)
-        gcn.train(network, graphs, grid.place_of(poses), rng, **how,
-                  progress=lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}"))
+        network = learn_places(senses, grid, n_views, seed, helper, stage, **how)
         network.save(path, settings)
         return network
 
     return kept(folder, "gcn", settings, gcn.GCN.load, learn)
+
+
+def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
+    """The same for several worlds at once, each in a process of the executor `pool`: dicts of Senses -> of GCN."""
+    settings = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
+                for world, of_world in senses.items()}
+    learning = {world: pool.submit(learn_places, of_world, PlaceGrid(of_world.world), n_views, seed, **how)
+                for world, of_world in senses.items() if not path_of(folder, "gcn", settings[world]).exists()}
+
+    def learn(world, path):
+        network = learning[world].result()
+        network.save(path, settings[world])
+        return network
+
+    return {world: kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world)) for world in senses}
+
+
+def learn_places(senses, grid, n_views, seed, helper=None, stage=None, **how):
+    """GCN trained on views from random free poses; half of them are seen by the `helper`, if there is one."""
+    rng = np.random.default_rng(seed)
+    poses = senses.world.free_poses(n_views, rng)
+    half = n_views // 2 if helper else n_views
+    theirs = helper and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
+    graphs = senses.look_around(poses[:half], rng, stage and (lambda share: stage(0.5 * share, "looking around")))
+    graphs = join([graphs, theirs.result()]) if theirs else graphs
+    network = gcn.GCN(grid.n_places, rng)
+    gcn.train(network, graphs, grid.place_of(poses), rng, **how,
+              progress=stage and (lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}")))
+    return network
 
 
 def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):
@@ -75,7 +98,8 @@ def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):
     settings = {**settings, "episodes": n_episodes, "seed": seed}
 
     def learn(path):
-        store = episode.train_nnql(senses, robot, grid, senses.world.free_poses, n_episodes, seed,
+        starts = senses.world.free_poses(n_episodes, np.random.default_rng([seed, 1]))
+        store = episode.train_nnql(senses, robot, grid, starts, seed,
                                    progress=lambda share, right: stage(share, f"right {right:.0%}"))
         store.save(path, settings)
         return store

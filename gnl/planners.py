@@ -8,7 +8,7 @@ import itertools
 
 import numpy as np
 
-from .robot import N_ACTIONS
+from .robot import LEFT, N_ACTIONS, RIGHT
 
 
 def stay(_step, _states, _rng):
@@ -49,9 +49,14 @@ def best_actions(q, rng):
     return np.where(q == q.max(1, keepdims=True), rng.random(q.shape), -1).argmax(1)
 
 
-def all_sequences(length):
-    """Every sequence of `length` actions: (A ** length, length)."""
-    return np.array(list(itertools.product(range(N_ACTIONS), repeat=length)))
+def sequences(length):
+    """Every sequence of `length` actions that does not at once undo a turn: (n, length), n = 3, 7, 17, 41, ...
+
+    To turn back is to see again what one has just seen.
+    """
+    undone = {LEFT, RIGHT}
+    return np.array([s for s in itertools.product(range(N_ACTIONS), repeat=length)
+                     if undone not in map(set, itertools.pairwise(s))])
 
 
 def _draws(rng, n):

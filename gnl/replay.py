@@ -14,7 +14,7 @@ from PIL import Image
 
 from . import draw, floor_map
 from .camera import render
-from .episode import LENGTH, Senses, run
+from .episode import Senses, run
 from .files import write_whole
 from .places import wrap_angle
 from .robot import ACTIONS
@@ -57,7 +57,7 @@ class Witness(Senses):
         return self.latest[stage]
 
 
-def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, length=LENGTH):
+def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, rules=None):
     """Run one episode and keep what each look shows: list of Look; arguments as for episode.run."""
     witness, looks = Witness(senses.world, senses.net, senses.gcn, senses.noise), []
 
@@ -70,7 +70,7 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, length=LENGT
             nnql.q_values(states)[0] if nnql else None,
             *((int(seen["plan"][0]), bool(seen["robot"][2][0])) if step else ())))
 
-    run(witness, robot, grid, plan, start_pose[None], seed, length, watch=watch)
+    run(witness, robot, grid, plan, start_pose[None], seed, rules, watch)
     return looks
 
 

@@ -89,13 +89,19 @@ class World:
         distance = box_distance(xy, self.centre[b], self.half[b], self.angle[b]).min(1, initial=np.inf)
         return self.free_space.inside(xy) & (distance > radius_m)
 
+    def is_reachable(self, xy, radius_m=ROBOT_RADIUS_M):
+        """Whether a disc at each point is free and in the largest region that it can roam: (n, 2) -> (n,) bool."""
+        reachable = self.free_space.look_up(self.free_space.largest_room(radius_m), xy)
+        reachable[reachable] = self.is_free(xy[reachable], radius_m)
+        return reachable
+
     def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
         """n poses uniform over the free space that hangs together, bearings uniform: (n, 3)."""
-        reachable, poses, drawn = self.free_space.largest_room(radius_m), np.empty((0, 3)), 0
+        poses, drawn = np.empty((0, 3)), 0
         while len(poses) < n:
             draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 1000, 3))
-            good = self.free_space.look_up(reachable, draw[:, :2]) & self.is_free(draw[:, :2], radius_m)
-            poses, drawn = np.vstack([poses, draw[good]]), drawn + len(draw)
+            poses = np.vstack([poses, draw[self.is_reachable(draw[:, :2], radius_m)]])
+            drawn += len(draw)
             if len(poses) < LEAST_FREE * drawn:
                 raise ValueError(f"{self.name}: expected free space for a disc of {radius_m:g} m, "
                                  f"found {len(poses)} free among {drawn} points")

@@ -13,7 +13,7 @@ import pytest
 import gnl
 from data_gen.rooms import make_home
 from gnl import episode, planners
-from gnl.episode import Record, Senses, best_sequence, likelihood, run, run_all, train_nnql
+from gnl.episode import Record, Rules, Senses, best_sequence, probability, run, run_all, side_by_side, train_nnql
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid, wrap_angle
 from gnl.ranks import reciprocal_ranks
@@ -78,7 +78,7 @@ def assert_equal(one, other, episodes=slice(None), n_looks=None):
 
 
 def test_an_episode_has_a_look_at_the_start_and_one_after_each_action():
-    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(7), 0, length=5)
+    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(7), 0, Rules(length=5))
     assert (record.poses.shape, record.actions.shape, record.answers.shape) == ((7, 6, 3), (7, 5), (7, 6))
     np.testing.assert_array_equal(record.poses[:, 0], starts(7))
     np.testing.assert_array_equal(record.places, GRID.place_of(record.poses))
@@ -125,7 +125,8 @@ def test_another_seed_is_another_run():
 def fingerprint():
     """Every bit of some episodes, training and search in a home with the paper's senses."""
     senses, robot, grid = home_of()
-    learner = train_nnql(senses, robot, grid, senses.world.free_poses, 40, 7, checkpoint_every=20)
+    starts_40 = senses.world.free_poses(40, np.random.default_rng(2))
+    learner = train_nnql(senses, robot, grid, starts_40, 7, checkpoint_every=20)
     poses = senses.world.free_poses(5, np.random.default_rng(1))
     record = run_all(senses, robot, grid, planners.greedy(learner), poses, 11)
     bits = b"".join(np.ascontiguousarray(array).tobytes() for array in (*vars(record).values(), *learner.values))
@@ -145,8 +146,8 @@ def test_many_episodes_are_their_groups_one_after_the_other(monkeypatch):
     senses, plan, poses = Sense(knows), planners.chance, starts(10)
     together = run_all(senses, Glide(), GRID, plan, poses, 3)
     seeds = np.random.SeedSequence(3).spawn(3)
-    for first, seed in zip((0, 4, 8), seeds, strict=True):
-        group = slice(first, first + 4)
+    for first, end, seed in zip((0, 4, 7), (4, 7, 10), seeds, strict=True):
+        group = slice(first, end)
         alone = run(senses, Glide(), GRID, plan, poses[group], seed)
         for name in Record.__dataclass_fields__:
             np.testing.assert_array_equal(getattr(together, name)[group], getattr(alone, name))
@@ -154,56 +155,94 @@ def test_many_episodes_are_their_groups_one_after_the_other(monkeypatch):
 
 
 def test_the_likelihood_is_a_probability_and_a_floor_below_it():
-    found = likelihood(np.array([[0.0, 0, 0, 500]]))
+    found = probability(np.array([[0.0, 0, 0, 500]]))
     np.testing.assert_allclose(found, [[1e-3, 1e-3, 1e-3, 1.001]], rtol=1e-6)
 
 
 class Diary:
-    """A learner that only writes down what it is told."""
+    """A store that only writes down what it is told."""
 
     def __init__(self):
-        self.steps = []
+        self.steps, self.log = [], []
+
+    def q_values(self, states):
+        return np.zeros((len(states), N_ACTIONS))
 
     def learn(self, *step):
         self.steps.append(step)
 
+    def checkpoint(self):
+        self.log.append(len(self.steps))
+
 
 @pytest.mark.parametrize(("score", "reward"), [(knows, 1.0), (mistakes, -1.0)])
-def test_the_learner_is_told_each_step_with_the_right_reward(score, reward):
-    diary, poses = Diary(), starts(6)
-    record = run(Sense(score), Glide(), GRID, planners.chance, poses, 0, length=3, learner=diary)
+def test_the_store_is_told_each_step_with_the_right_reward(score, reward):
+    diary, told = Diary(), []
+
+    def state(scores, pooled, actions):
+        told.append((scores, actions))
+        return reciprocal_ranks(scores)
+
+    train_nnql(Sense(score), Glide(), GRID, starts(6), 0, Rules(length=3, state=state), store=diary)
     assert len(diary.steps) == 3
     for step, (states, actions, rewards, next_states, done) in enumerate(diary.steps):
-        np.testing.assert_array_equal(states, reciprocal_ranks(score(record.poses[:, step])))
-        np.testing.assert_array_equal(next_states, reciprocal_ranks(score(record.poses[:, step + 1])))
-        np.testing.assert_array_equal(actions, record.actions[:, step])
+        np.testing.assert_array_equal(states, reciprocal_ranks(told[step][0]))
+        np.testing.assert_array_equal(next_states, reciprocal_ranks(told[step + 1][0]))
+        np.testing.assert_array_equal(actions, told[step + 1][1])
         assert rewards.tolist() == [reward] * 6
         assert done.tolist() == [step == 2] * 6
 
 
 def test_whoever_watches_sees_every_look():
     seen = []
-    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(3), 0, length=2,
-                 watch=lambda step, **what: seen.append((step, what)))
+    record = run(Sense(knows), Glide(), GRID, planners.chance, starts(3), 0, Rules(length=2),
+                 lambda step, **what: seen.append((step, what)))
     assert [step for step, _ in seen] == [0, 1, 2]
     for step, what in seen:
         np.testing.assert_array_equal(what["poses"], record.poses[:, step])
         np.testing.assert_array_equal(what["pooled"].argmax(1), record.answers[:, step])
+        np.testing.assert_array_equal(what["right"], record.correct[:, step])
+        np.testing.assert_array_equal(what["belief"], record.belief[:, step])
+        if step:
+            np.testing.assert_array_equal(what["actions"], record.actions[:, step - 1])
+            np.testing.assert_array_equal(what["seen"], seen[step - 1][1]["states"])
+
+
+def test_the_rules_of_an_episode_are_those_that_are_given():
+    def opposite(scores):
+        return np.roll(probability(scores), K // 2, 1)
+
+    assert not run(Sense(knows), Glide(), GRID, planners.chance, starts(9), 0, Rules(likelihood=opposite)).correct.any()
+    pooled = []
+    for pooling in ("sum", "max"):
+        run(Sense(knows), Glide(), GRID, planners.chance, starts(9), 0, Rules(pooling=pooling),
+            lambda step, **what: pooled.append(what["pooled"]))
+    assert (pooled[0] >= pooled[5] - 1e-6).all()
+    assert pooled[0].sum() > 2 * pooled[5].sum()
+
+
+@pytest.mark.parametrize("n", [1, 31, 32, 33, 100])
+def test_groups_side_by_side_are_as_equal_as_can_be(n):
+    groups = side_by_side(starts(n))
+    np.testing.assert_array_equal(np.concatenate(groups), starts(n))
+    sizes = [len(group) for group in groups]
+    assert max(sizes) - min(sizes) <= 1
+    assert max(sizes) <= episode.SIDE_BY_SIDE < sum(sizes[:2]) + episode.SIDE_BY_SIDE * (len(sizes) == 1)
 
 
 def test_training_explores_first_then_keeps_checkpoints_and_says_how_far_it_is():
     told = []
-    learner = train_nnql(Sense(knows), Glide(), GRID, starts, 100, 0, checkpoint_every=40,
+    learner = train_nnql(Sense(knows), Glide(), GRID, starts(100), 0, checkpoint_every=40,
                          progress=lambda share, right: told.append((share, right)))
     assert len(learner.log) == 2  # after 40 and 80 episodes
-    assert [share for share, _ in told] == [0.32, 0.64, 0.96, 1.0]
+    assert [share for share, _ in told] == [0.25, 0.5, 0.75, 1.0]
     assert {right for _, right in told} == {1.0}
     stored = sum(len(values) for values in learner.values)
     assert 0 < stored <= 100 * episode.LENGTH
     assert all((values > 0).all() for values in learner.values)  # each answer was right, so each step was worth +1
 
 
-@pytest.mark.parametrize("planted", [(LEFT, FORWARD, RIGHT), (FORWARD, RIGHT, FORWARD), (RIGHT, RIGHT, LEFT)])
+@pytest.mark.parametrize("planted", [(LEFT, FORWARD, RIGHT), (FORWARD, RIGHT, FORWARD), (RIGHT, RIGHT, FORWARD)])
 def test_the_search_finds_the_sequence_after_which_one_sees_where_one_is(planted):
     """All views look alike but the one at the end of the planted way; all starts lie in the first three places."""
     rng = np.random.default_rng(0)
@@ -216,13 +255,12 @@ def test_the_search_finds_the_sequence_after_which_one_sees_where_one_is(planted
         there = np.isclose(poses[:, None], goals[None], atol=1e-6).all(2).any(1)
         return np.where(there[:, None], knows(poses), 0.0)
 
-    found = best_sequence(Sense(score), Glide(), GRID, first, 0, length=3)
+    found = best_sequence(Sense(score), Glide(), GRID, first, 0, Rules(length=3))
     reached = first
     for action in found:
         reached, _, _ = Glide().step(reached, np.full(len(reached), action), rng)
     np.testing.assert_allclose(reached, goals, atol=1e-9)
-    if FORWARD in planted:
-        assert tuple(found) == planted
+    assert tuple(found) == planted
 
 
 def test_senses_book_the_seconds_of_each_stage():

@@ -30,13 +30,13 @@ def parts():
 def looks(parts):
     _, grid, robot, senses = parts
     return replay.collect(senses, robot, grid, LEFT_THEN_FORWARD, START, SEED,
-                          NNQL(grid.n_places, N_ACTIONS), length=2)
+                          NNQL(grid.n_places, N_ACTIONS), rules=episode.Rules(length=2))
 
 
 def test_looking_over_its_shoulder_does_not_change_an_episode(parts, looks):
     _, grid, robot, senses = parts
     states = []
-    record = episode.run(senses, robot, grid, LEFT_THEN_FORWARD, START[None], SEED, length=2,
+    record = episode.run(senses, robot, grid, LEFT_THEN_FORWARD, START[None], SEED, rules=episode.Rules(length=2),
                          watch=lambda step, **happened: states.append(happened["states"][0]))
     assert np.array_equal([look.states for look in looks], states)
     assert np.array_equal([look.pose for look in looks], record.poses[0])

@@ -1,0 +1,56 @@
+"""Start poses with a cross-view gap: robots learn where they will not be tested (section V-A).
+
+Test starts are uniform in free space. A training start is drawn again until it lies farther than T_xy from the
+nearest test start and is turned by more than T_theta from it, so that no view of a test was ever learned from.
+
+    T_xy [m], T_theta [rad]   the domain gap     n starts, each (x [m], y [m], theta [rad])
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from gnl.places import wrap_angle
+
+DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
+
+
+def starts_of(cell, world, n_training, n_tests, n_validation):
+    """Starts of a cell of Table I; tests of one cell are no tests of another."""
+    gap = cell.t_xy_m, np.radians(cell.t_theta_deg)
+    return draw_starts(world, *gap, n_training, n_tests, n_validation, np.random.default_rng(cell.entropy))
+
+
+def draw_starts(world, t_xy_m, t_theta_rad, n_training, n_tests, n_validation, rng):
+    """Starts of one experiment as a dict: "tests", "validation" (of the test domain, too) and "training", (n, 3) each.
+
+    The test starts are drawn first and do not depend on the gap.
+    """
+    tests, validation = world.free_poses(n_tests, rng), world.free_poses(n_validation, rng)
+    training = training_starts(world, tests, t_xy_m, t_theta_rad, n_training, rng)
+    return {"tests": tests, "validation": validation, "training": training}
+
+
+def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
+    """n poses uniform over the free space that is beyond the gap from all test starts (m, 3): (n, 3).
+
+    ValueError with the share of poses that would do, if a home has too little of it
+    """
+    found, drawn = [], 0
+    while sum(map(len, found)) < n:
+        poses = rng.uniform((*world.bounds[:2], -np.pi), (*world.bounds[2:], np.pi), (DRAWN_AT_ONCE, 3))
+        poses = poses[beyond_gap(poses, tests, t_xy_m, t_theta_rad)]
+        found.append(poses[world.is_reachable(poses[:, :2])])
+        drawn += DRAWN_AT_ONCE
+        if sum(map(len, found)) < FEWEST * drawn:
+            raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
+                             f"degrees off all {len(tests)} test starts, found {sum(map(len, found))} among {drawn} "
+                             "poses drawn")
+    return np.concatenate(found)[:n]
+
+
+def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
+    """Whether each pose is farther than T_xy from the nearest test start, and turned by more than T_theta from it."""
+    # CHOICE: the nearest test start is the nearest in location; both differences are against that one.
+    distance, nearest = cKDTree(tests[:, :2]).query(poses[:, :2])
+    turned = abs(wrap_angle(poses[:, 2] - tests[nearest, 2]))
+    return (distance > t_xy_m) & (turned > t_theta_rad)

@@ -1,0 +1,133 @@
+"""One cell of Table I: learn on one side of a domain gap, be tested on the other (section V).
+
+A cell is a world, a gap (T_xy, T_theta) between the starts of training and of the tests, and a seed. All its methods
+are tested from the same starts with the same luck, so that they can be compared in pairs.
+
+    SV     the first view alone               MV     chance           Scan   the best fixed sequence of actions
+    Ours   the paper's NNQL                   DA     Ours at the checkpoint that is best on a few validation episodes
+    Oracle Ours at the checkpoint that is best on the tests themselves: that is cheating, and shows what DA could gain
+"""
+
+import json
+import platform
+import resource
+import time
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+
+import numpy as np
+
+from . import episode, planners
+from .places import PlaceGrid
+from .robot import Robot
+
+N_CHECKPOINTS = 10
+SCAN_STARTS = 120  # training starts over which the fixed sequences race
+GAPS_M, GAPS_DEG = (0.2, 0.4, 0.6, 0.8, 1.0), (10, 30, 50, 70, 90)  # the paper's, 25 in all
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Which cell it is; `world` is the seed of its home."""
+
+    world: int
+    t_xy_m: float
+    t_theta_deg: int
+    seed: int
+
+    @property
+    def name(self):
+        """For files: 800-0.2m-10deg-seed0."""
+        return f"{self.world}-{self.t_xy_m:g}m-{self.t_theta_deg}deg-seed{self.seed}"
+
+    @property
+    def entropy(self):
+        """What its random numbers grow from."""
+        return [self.seed, self.world, round(1000 * self.t_xy_m), self.t_theta_deg]
+
+
+def run_cell(cell, senses, starts):
+    """Learn and test in one cell; a function of its arguments alone, in whatever process it runs.
+
+    starts  : "training", "validation" and "tests" (n, 3) each
+    returns : the outcomes, and what they cost, both as dicts for JSON
+    """
+    began = time.time(), time.process_time()
+    robot, grid = Robot(senses.world), PlaceGrid(senses.world)
+    learning, racing, testing, validating = np.random.SeedSequence(cell.entropy).spawn(4)
+    training = starts["training"]
+    store = episode.train_nnql(senses, robot, grid, training, learning,
+                               checkpoint_every=len(training) // N_CHECKPOINTS)
+    sequence = episode.best_sequence(senses, robot, grid, training[:SCAN_STARTS], racing)
+
+    def test(plan, poses, seed):
+        return outcomes(grid, episode.run_all(senses, robot, grid, plan, poses, seed))
+
+    tests = {name: test(plan, starts["tests"], testing)
+             for name, plan in {"MV": planners.chance, "Scan": planners.scan(sequence)}.items()}
+    past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
+    result = {"cell": asdict(cell), "sequence": sequence.tolist(), "tests": tests,
+              "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
+              "validation": [test(plan, starts["validation"], validating) for plan in past]}
+    return result, costs(senses, began, sum(map(len, store.values)))
+
+
+def outcomes(grid, record):
+    """Right or wrong after each look, as strings of 1 and 0, a character an episode."""
+    where = grid.location_of(record.answers) == grid.location_of(record.places)
+    return {"place": strings(record.correct), "location": strings(where)}
+
+
+def strings(right):
+    """(n, T) bool -> T strings of n characters."""
+    return ["".join("01"[int(one)] for one in look) for look in right.T]
+
+
+def arrays(strings):
+    """The other way round: T strings -> (n, T) bool."""
+    return np.array([[one == "1" for one in look] for look in strings]).T
+
+
+def costs(senses, began, n_pairs):
+    """Seconds of each stage, and where and with what they were spent."""
+    return {"seconds": time.time() - began[0], "of processor": time.process_time() - began[1], "views": senses.views,
+            "of stages": senses.seconds, "pairs": n_pairs, "machine": platform.machine(),
+            "peak MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+            "versions": {"python": platform.python_version(), **{name: version(name) for name in
+                                                                 ("numpy", "scipy", "pillow", "pymunk")}}}
+
+
+def right(result, what="place", checkpoint=-1):
+    """Right answers after the last look by method, (n,) bool each; of NNQL at one of its checkpoints.
+
+    what : "place", or "location" for the place without its bearing
+    """
+    first = {"SV": arrays(result["tests"]["MV"][what])[:, 0]}
+    tests = {name: arrays(outcome[what])[:, -1] for name, outcome in result["tests"].items()}
+    by_checkpoint = [arrays(outcome[what])[:, -1] for outcome in result["checkpoints"]]
+    best = latest_best([arrays(outcome["place"])[:, -1].mean() for outcome in result["checkpoints"]])
+    return {**first, **tests, "Ours": by_checkpoint[checkpoint], "DA": by_checkpoint[adapted(result)],
+            "Oracle": by_checkpoint[best]}
+
+
+def curve(results):
+    """Right answers of NNQL at each checkpoint, of MV and Scan, by cell: {method: (C, checkpoints)}."""
+    n = len(results[0]["checkpoints"])
+    ours = [[right(result, checkpoint=i)["Ours"].mean() for i in range(n)] for result in results]
+    return {"Ours": np.array(ours)} | {name: np.array([[right(result)[name].mean()] * n for result in results])
+                                       for name in ("MV", "Scan")}
+
+
+def adapted(result):
+    """Checkpoint that is best on the validation episodes: 0, 1, ..."""
+    return latest_best([arrays(outcome["place"])[:, -1].mean() for outcome in result["validation"]])
+
+
+def latest_best(values):
+    """Index of the greatest value, of equal ones the last."""
+    return len(values) - 1 - int(np.argmax(values[::-1]))
+
+
+def to_bytes(value):
+    """JSON in one form only, so that equal outcomes are equal files."""
+    return (json.dumps(value, sort_keys=True, separators=(",", ":")) + "\n").encode()

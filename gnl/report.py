@@ -1,0 +1,221 @@
+"""The report on Table I, from the files of its cells alone: Markdown, and the pictures of draw_charts.py."""
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from . import draw, draw_charts
+from .compare import episodes_needed, mcnemar, over_cells
+from .experiment import GAPS_DEG, GAPS_M, adapted, curve, latest_best, right
+from .files import write_whole
+from .paper import VIEW_MS, table_1
+from .terminal import Stage
+
+SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
+PAIRS = ("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "Scan"), ("Ours+", "MV"), \
+    ("Ours+", "Scan"), ("Ours+", "Ours"), ("Oracle", "Ours")
+RESOLVED = 10, 5, 2.5, 1  # points, to be told apart
+
+
+def add_arguments(parser):
+    """Options of `python -m gnl report`."""
+    parser.add_argument("--out", default="out/table", help="folder of results of `python -m gnl table` (out/table)")
+    parser.add_argument("--to", help="folder for the report (OUT/report)")
+
+
+def run(args):
+    """Write report.md and its pictures."""
+    stage, folder = Stage("report"), Path(args.to or Path(args.out) / "report")
+    results, costs, settings = load(args.out)
+    pictures = {"gaps": draw_charts.heat_maps(by_gap(results, "Ours", "MV"), GAPS_M, GAPS_DEG),
+                "curves": draw_charts.curves({world: curve(of_world) for world, of_world in by_world(results).items()}),
+                "chosen": draw_charts.histogram(Counter(adapted(result) for result in results))}
+    for name, picture in pictures.items():
+        draw.save_png(picture, folder / f"{name}.png")
+    write_whole(folder / "report.md", "\n\n".join(sections(results, costs, settings)).encode() + b"\n")
+    stage.done(f"{len(results)} cells, {folder / 'report.md'}")
+
+
+def load(out):
+    """Outcomes and costs of all cells of a folder, ordered by cell, and their settings."""
+    paths = sorted(Path(out).glob("cells/*.json"))
+    if not paths:
+        raise ValueError(f"{Path(out) / 'cells'}: expected cells of `python -m gnl table`, found none")
+    cells = sorted((load_cell(path) for path in paths), key=lambda cell: tuple(cell[0]["cell"].values()))
+    return *map(list, zip(*cells, strict=True)), json.loads((Path(out) / "settings.json").read_bytes())
+
+
+def load_cell(path):
+    """Outcomes and costs of one cell."""
+    try:
+        result = json.loads(path.read_bytes())
+        right(result)
+        return result, json.loads((path.parents[1] / "costs" / path.name).read_bytes())
+    except (ValueError, KeyError, TypeError, IndexError, OSError) as error:
+        raise ValueError(f"{path}: expected the outcomes of a cell and their costs, found {error}") from None
+
+
+def sections(results, costs, settings):
+    """The parts of the report, each a piece of Markdown."""
+    methods = [name for name in SHOWN if name in right(results[0])]
+    n_tests = sum(len(right(result)["MV"]) for result in results)
+    yield "# Table I, run again"
+    yield (f"{len(results)} cells, {settings['episodes']} training episodes and {settings['tests']} tests each; "
+           f"{n_tests} test episodes of every method. All numbers are percent or percentage points of right answers "
+           "(place: x, y and bearing) after the fifth look. Intervals are 95 %, from a bootstrap of whole cells.")
+    yield "## Means\n\n" + means(results, methods)
+    yield "## Differences in pairs\n\n" + differences(results, methods)
+    yield "![Ours - MV by gap](gaps.png)"
+    yield "## The paper's own cells\n\n" + papers_differences()
+    yield "## How many episodes it takes\n\n" + power(results, methods)
+    yield "## The location alone\n\n" + locations(results, methods)
+    yield "## Which checkpoint adaptation chose\n\n" + adaptation(results)
+    yield "![Learning curves](curves.png)\n\n![Chosen checkpoints](chosen.png)"
+    yield "## What it costs\n\n" + cost(costs)
+    yield "## Table I\n\n" + whole_table(results, methods)
+
+
+def markdown(head, rows):
+    """A table."""
+    lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+def percent(values):
+    return f"{100 * np.mean(values):.1f}"
+
+
+def interval(differences):
+    """Mean over cells in points and its interval, as words."""
+    mean, low, high = (100 * value for value in over_cells(differences, np.random.default_rng(0)))
+    return f"{mean:+.1f}", f"[{low:+.1f}, {high:+.1f}]"
+
+
+def by_world(results):
+    """The results of each world."""
+    return {world: [result for result in results if result["cell"]["world"] == world]
+            for world in sorted({result["cell"]["world"] for result in results})}
+
+
+def by_gap(results, a, b):
+    """Mean difference of two methods in points: {world: {(T_xy, T_theta): points}}."""
+    found = {}
+    for result in results:
+        cell, last = result["cell"], right(result)
+        of_gap = found.setdefault(cell["world"], {}).setdefault((cell["t_xy_m"], cell["t_theta_deg"]), [])
+        of_gap.append(100 * (last[a].mean() - last[b].mean()))
+    return {world: {gap: np.mean(points) for gap, points in gaps.items()} for world, gaps in found.items()}
+
+
+def means(results, methods):
+    """Right answers by world, by T_xy and by T_theta, the paper's in brackets."""
+    papers, rows = table_1(), []
+    groups = [("all", results)]
+    for key, words in (("world", "home {}"), ("t_xy_m", "T_xy {} m"), ("t_theta_deg", "T_theta {} deg")):
+        groups += [(words.format(value), [result for result in results if result["cell"][key] == value])
+                   for value in sorted({result["cell"][key] for result in results})]
+    for name, group in groups:
+        cells = [(r["cell"]["world"], r["cell"]["t_xy_m"], r["cell"]["t_theta_deg"]) for r in group]
+        row = [name]
+        for method in methods:
+            theirs = [papers[cell][method] for cell in cells if cell in papers and method in papers[cell]]
+            row.append(percent([right(result)[method].mean() for result in group])
+                       + (f" ({np.mean(theirs):.1f})" if theirs else ""))
+        rows.append(row)
+    return "The paper's means of the same cells in brackets.\n\n" + markdown(["", *methods], rows)
+
+
+def pairs_of(methods):
+    return [(a, b) for a, b in PAIRS if a in methods and b in methods]
+
+
+def differences(results, methods):
+    """Paired differences over all cells and in each world, and McNemar's exact p over all pairs."""
+    worlds = by_world(results)
+    rows = []
+    for a, b in pairs_of(methods):
+        d = {world: [right(r)[a].mean() - right(r)[b].mean() for r in group] for world, group in worlds.items()}
+        every = [np.concatenate([right(result)[name] for result in results]) for name in (a, b)]
+        rows.append([f"{a} - {b}", *interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
+                     *(" ".join(interval(of_world)) for of_world in d.values())])
+    return markdown(["", "points", "interval", "McNemar p", *(f"world {world}" for world in worlds)], rows)
+
+
+def papers_differences():
+    """The same of the paper's 75 cells, whose episodes are not known: only cells can be drawn again."""
+    cells = table_1().values()
+    rows = [[f"{a} - {b}", *interval([(cell[a] - cell[b]) / 100 for cell in cells])]
+            for a, b in (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"))]
+    return markdown(["", "points", "interval"], rows)
+
+
+def power(results, methods):
+    """Episodes that resolve a difference, in pairs and not in pairs."""
+    rows = []
+    for a, b in pairs_of(methods):
+        first, second = (np.concatenate([right(result)[name] for result in results]).astype(float) for name in (a, b))
+        paired, alone = (first - second).std(), np.hypot(first.std(), second.std())
+        rows.append([f"{a} - {b}", *(f"{episodes_needed(points / 100, paired)} / {episodes_needed(points / 100, alone)}"
+                                     for points in RESOLVED)])
+    return ("To see a true difference in 80 % of all experiments at 95 %: episodes in pairs / episodes of each method "
+            "that are not paired.\n\n" + markdown(["", *(f"{points} points" for points in RESOLVED)], rows))
+
+
+def locations(results, methods):
+    """Right answers if the bearing is not asked for."""
+    rows = [["place", *(percent([right(result)[name].mean() for result in results]) for name in methods)],
+            ["location", *(percent([right(r, "location")[name].mean() for r in results]) for name in methods)]]
+    return markdown(["", *methods], rows)
+
+
+def adaptation(results):
+    """How often each checkpoint was chosen, what that gained, and what a perfect choice would have."""
+    chosen = np.array([adapted(result) for result in results])
+    best = [latest_best([right(result, checkpoint=i)["Ours"].mean() for i in range(len(result["checkpoints"]))])
+            for result in results]
+    rows = [["chosen", *np.bincount(chosen, minlength=len(results[0]["checkpoints"]))],
+            ["best on the tests", *np.bincount(best, minlength=len(results[0]["checkpoints"]))]]
+    gain = [right(result)["DA"].mean() - right(result)["Ours"].mean() for result in results]
+    early = [g for g, c in zip(gain, chosen, strict=True) if c < chosen.max() // 2]
+    text = f"DA - Ours {' '.join(interval(gain))}"
+    if early:
+        text += f"; where an early one was chosen ({len(early)} cells) {' '.join(interval(early))}"
+    return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
+
+
+def cost(costs):
+    """Milliseconds a view by stage, the paper's beside them; memory, machine, versions."""
+    views = sum(of_cell["views"] for of_cell in costs)
+    stages = sorted({name for of_cell in costs for name in of_cell["of stages"]})
+    ms = {name: 1000 * sum(of_cell["of stages"].get(name, 0) for of_cell in costs) / views for name in stages}
+    rows = [[name, f"{value:.2f}", VIEW_MS.get(name, "")] for name, value in sorted(ms.items(), key=lambda x: -x[1])]
+    seconds = sum(of_cell["seconds"] for of_cell in costs)
+    rows.append(["all", f"{1000 * seconds / views:.2f}", 28])
+    machines = Counter(of_cell["machine"] for of_cell in costs)
+    versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
+    memory = max(of_cell["peak MB"] for of_cell in costs)
+    return (f"{views} views in {seconds / 3600:.1f} hours of one core; at most {memory:.0f} MB a process; "
+            f"{', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
+            + markdown(["stage", "ours", "the paper"], rows))
+
+
+def whole_table(results, methods):
+    """Every cell in the paper's layout, the paper's number in brackets."""
+    papers, worlds, cells = table_1(), by_world(results), {}
+    for result in results:
+        c = result["cell"]
+        cells.setdefault((c["t_xy_m"], c["t_theta_deg"]), {}).setdefault(c["world"], []).append(right(result))
+    rows = []
+    for gap in sorted(cells, key=lambda gap: (-gap[0], -gap[1])):
+        row = list(gap)
+        for world in worlds:
+            for method in methods:
+                here = cells[gap].get(world)
+                theirs = papers.get((world, *gap), {}).get(method)
+                row.append((percent([last[method].mean() for last in here]) if here else "")
+                           + (f" ({theirs:.0f})" if here and theirs is not None else ""))
+        rows.append(row)
+    heads = [f"{world} {method}" for world in worlds for method in methods]
+    return markdown(["T_xy [m]", "T_theta [deg]", *heads], rows)

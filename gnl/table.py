@@ -1,0 +1,194 @@
+"""Table I: all cells on all cores, each finished one a file; a run that was stopped goes on where it was."""
+
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import FIRST_COMPLETED, wait
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from . import learned
+from .episode import Senses
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
+from .files import load_arrays, write_whole
+from .gcn import BATCH, EPOCHS
+from .terminal import Stage, processes
+from .world import World
+
+WORLDS = (800, 801, 809)  # after the paper's scenes 00800, 00801, 00809; homes below 800 teach the net
+GAPS = tuple(f"{m}/{deg}" for m in GAPS_M for deg in GAPS_DEG)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is the same in all cells of a table; the paper's numbers where it has them."""
+
+    episodes: int = 10_000
+    tests: int = 100
+    validation: int = 10
+    noise: float = 1.0
+    net_epochs: int = 6
+    net_views: int = 2400
+    gcn_views: int = 10_000
+    gcn_epochs: int = EPOCHS
+    gcn_batch: int = BATCH
+
+
+QUICK = Settings(episodes=320, tests=40, net_epochs=1, net_views=800, gcn_views=1500, gcn_epochs=20)
+QUICK_GAPS = "0.2/10", "1.0/90"
+
+
+def add_arguments(parser):
+    """Options of `python -m gnl table`."""
+    parser.add_argument("--worlds", nargs="+", default=WORLDS, metavar="SEED", help="homes (800 801 809)")
+    parser.add_argument("--gaps", nargs="+", metavar="M/DEG", help=f"T_xy/T_theta of {GAPS[0]} .. {GAPS[-1]} (all 25)")
+    parser.add_argument("--episodes", type=int, help="training episodes a cell (10000)")
+    parser.add_argument("--tests", type=int, help="test episodes a cell (100)")
+    parser.add_argument("--noise", type=float, help="appearance noise of the views (1)")
+    parser.add_argument("--seed", type=int, default=0, help="(0)")
+    parser.add_argument("--repeats", type=int, default=1, help="cells of each kind, the seeds counted on (1)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
+    parser.add_argument("--dask", metavar="ADDRESS", help="run on the cluster of this dask scheduler instead")
+    parser.add_argument("--out", default="out/table", help="folder of results (out/table)")
+    parser.add_argument("--quick", action="store_true", help="a small slice, in about a minute")
+
+
+def run(args):
+    """Run the cells that are not finished yet."""
+    settings, cells = check(args)
+    out = Path(args.out)
+    agree(out / "settings.json", asdict(settings))
+    todo = [cell for cell in cells if not finished(out, cell)]
+    if todo:
+        with executor(args.jobs, args.dask) as pool:
+            senses = prepare(out, settings, todo, args.jobs, pool)
+            stage = Stage("table")
+            run_cells(out, todo, senses, settings, pool, stage)
+            stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
+    print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
+
+
+def run_cells(out, cells, senses, settings, pool, stage):
+    """Hand the cells to the processes and write what comes back."""
+    waiting = {pool.submit(run_cell, cell, senses[cell.world], load_starts(out, cell)): cell for cell in cells}
+    while waiting:
+        ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
+        for future in ready:
+            cell, (result, costs) = waiting.pop(future), future.result()
+            write_whole(out / "costs" / f"{cell.name}.json", to_bytes(costs))
+            write_whole(path_of(out, cell), to_bytes(result))
+        done = len(cells) - len(waiting)
+        rate = done * settings.episodes / stage.seconds
+        stage(done / len(cells), f"{done} of {len(cells)} cells, {rate:.0f} episodes/s")
+
+
+def prepare(out, settings, cells, jobs, pool):
+    """What the cells share: homes and starts, drawn by a program of their own, the net, and a GCN for each world."""
+    data, worlds = out / "data", sorted({cell.world for cell in cells})
+    draw = [sys.executable, "-m", "data_gen"]
+    views = data / "views.npz"
+    programs = [[*draw, "views", views, "--views", settings.net_views, "--noise", settings.noise]]
+    programs += [[*draw, "home", data / f"home-{world}.json", "--seed", world] for world in worlds]
+    names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
+    programs += [[*draw, "starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,
+                  "--validation", settings.validation, "--jobs", jobs]]
+    for program in programs:
+        status = subprocess.run([str(word) for word in program]).returncode
+        if status:
+            sys.exit(status)  # it has said why
+
+    stage = Stage("net")
+    rgb_and_labels, views_made_by = load_arrays(views)
+    net = learned.segmentation_net(out / "learned", (rgb_and_labels["rgb"], rgb_and_labels["labels"]), views_made_by,
+                                   settings.net_epochs, 0, stage)
+    stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of other homes")
+    stage = Stage("gcn")
+    senses = {world: Senses(World.load(data / f"home-{world}.json"), net, None, settings.noise) for world in worlds}
+    how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch}
+    made_by = {"net": learned.digest([views_made_by, settings.net_epochs]), "noise": settings.noise}
+    classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
+    for world, classifier in classifiers.items():
+        senses[world].gcn = classifier
+    stage.done(f"places of {len(worlds)} homes, {settings.gcn_views} views of each")
+    return senses
+
+
+def check(args):
+    """Settings and cells of the command line; ValueError for what cannot be."""
+    settings = QUICK if args.quick else Settings()
+    given = {name: getattr(args, name) for name in ("episodes", "tests", "noise") if getattr(args, name) is not None}
+    settings = replace(settings, **given)
+    for name, value, least in (("jobs", args.jobs, 1), ("repeats", args.repeats, 1), ("seed", args.seed, 0),
+                               ("tests", settings.tests, 2), ("episodes", settings.episodes, N_CHECKPOINTS)):
+        if value < least:
+            raise ValueError(f"--{name}: expected at least {least}, found {value}")
+    worlds = [800] if args.quick and args.worlds is WORLDS else [world_of(name) for name in args.worlds]
+    gaps = [gap_of(name) for name in args.gaps or (QUICK_GAPS if args.quick else GAPS)]
+    return settings, [Cell(world, *gap, args.seed + i) for i in range(args.repeats) for gap in gaps for world in worlds]
+
+
+def world_of(name):
+    """The seed of a home in which robots are localized."""
+    if not str(name).isdigit() or int(name) < WORLDS[0]:
+        raise ValueError(f"--worlds: expected seeds of homes, {WORLDS[0]} or more, found {name!r}")
+    return int(name)
+
+
+def gap_of(name):
+    """T_xy [m] and T_theta [degrees] of "0.2/10"."""
+    if name not in GAPS:
+        raise ValueError(f"--gaps: expected T_xy/T_theta of {', '.join(map(str, GAPS_M))} m and "
+                         f"{', '.join(map(str, GAPS_DEG))} degrees, as in {GAPS[0]}, found {name!r}")
+    t_xy_m, t_theta_deg = name.split("/")
+    return float(t_xy_m), int(t_theta_deg)
+
+
+def agree(path, settings):
+    """Write the settings of a folder of results; ValueError if it holds results of other ones."""
+    if path.exists():
+        there = json.loads(path.read_bytes())
+        for name, value in settings.items():
+            if there.get(name) != value:
+                raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
+                                 "name another folder with --out")
+    write_whole(path, to_bytes(settings))
+
+
+def finished(out, cell):
+    """Whether a cell's file is there and whole; a damaged one is named and set aside."""
+    path = path_of(out, cell)
+    try:
+        return path.exists() and json.loads(path.read_bytes())["cell"] == asdict(cell)
+    except (ValueError, KeyError, TypeError):
+        aside = path.with_suffix(".damaged")
+        os.replace(path, aside)
+        print(f"{path}: expected the outcomes of a cell, found something else; set aside as {aside.name}, done again",
+              file=sys.stderr)
+        return False
+
+
+def path_of(out, cell):
+    """The file of a cell's outcomes."""
+    return Path(out) / "cells" / f"{cell.name}.json"
+
+
+def load_starts(out, cell):
+    """Start poses of a cell, by what they are for."""
+    return load_arrays(Path(out) / "data" / f"starts-{cell.name}.npz")[0]
+
+
+@contextmanager
+def executor(jobs, address=None):
+    """Where cells run: processes beside this one, or the cluster of a dask scheduler."""
+    if address is None:
+        with processes(jobs) as pool:
+            yield pool
+        return
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise ValueError("--dask: expected dask to be installed, pip install 'gnl[cluster]'; found none") from None
+    with Client(address, timeout="10s") as client:
+        yield client.get_executor()

@@ -1,0 +1,101 @@
+"""Cross-view starts: tests uniform in free space; training beyond the gap from all of them, and else uniform, too."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from data_gen.rooms import make_home
+from data_gen.starts import beyond_gap, draw_starts, training_starts
+from gnl.experiment import GAPS_DEG, GAPS_M
+from gnl.places import wrap_angle
+from gnl.world import World
+from tests.conftest import room
+
+N_TESTS = 100
+
+
+@pytest.fixture(scope="module", params=[800, 801, 809])
+def home(request):
+    return make_home(request.param)
+
+
+def differences(poses, tests):
+    """Distance [m] to the nearest test start, and turn [rad] from it, by hand: one pose after the other."""
+    found = []
+    for x, y, theta in poses:
+        distance = np.hypot(tests[:, 0] - x, tests[:, 1] - y)
+        nearest = distance.argmin()
+        turn = (theta - tests[nearest, 2]) % (2 * np.pi)
+        found.append((distance[nearest], min(turn, 2 * np.pi - turn)))
+    return np.array(found).T
+
+
+@pytest.mark.parametrize("t_xy_m", GAPS_M)
+@pytest.mark.parametrize("t_theta_deg", GAPS_DEG)
+def test_training_starts_are_beyond_each_of_the_papers_gaps(home, t_xy_m, t_theta_deg):
+    starts = draw_starts(home, t_xy_m, np.radians(t_theta_deg), 60, N_TESTS, 10, np.random.default_rng(3))
+    assert [starts[name].shape for name in ("tests", "validation", "training")] == [(N_TESTS, 3), (10, 3), (60, 3)]
+    distance, turn = differences(starts["training"], starts["tests"])
+    assert (distance > t_xy_m).all()
+    assert (turn > np.radians(t_theta_deg)).all()
+    assert home.is_free(starts["training"][:, :2]).all()
+
+
+def test_there_are_starts_just_beyond_the_gap_so_it_is_not_larger_than_said():
+    home = make_home(800)
+    starts = draw_starts(home, 0.4, np.radians(50), 4000, N_TESTS, 1, np.random.default_rng(0))
+    distance, turn = differences(starts["training"], starts["tests"])
+    assert distance.min() < 0.401
+    assert np.degrees(turn.min()) < 50.2
+
+
+def test_the_gap_is_a_matter_of_the_nearest_test_start_alone():
+    tests = np.array([[0.0, 0, 0], [1.0, 0, np.pi]])
+    poses = np.array([[0.3, 0, 1.0], [0.3, 0, 0.1], [0.1, 0, 1.0], [0.8, 0, 3.0], [0.7, 0, 0.0], [0.3, 0, -3.1]])
+    assert beyond_gap(poses, tests, 0.2, 0.5).tolist() == [True, False, False, False, True, True]
+
+
+def test_bearings_are_compared_around_the_circle():
+    tests = np.array([[0.0, 0, np.pi - 0.05]])
+    poses = np.array([[1.0, 0, -np.pi + 0.1], [1.0, 0, -np.pi + 0.5]])
+    assert beyond_gap(poses, tests, 0.5, 0.2).tolist() == [False, True]
+
+
+def test_training_starts_are_uniform_but_for_the_gap():
+    """In an empty room with one test start: equal areas and equal angles beyond the gap get equal shares."""
+    home, tests = World(room(size=(6.0, 4.0))), np.array([[3.0, 2.0, 0.5]])
+    starts = training_starts(home, tests, 0.5, np.radians(60), 20_000, np.random.default_rng(1))
+    turned = (starts[:, 2] - 0.5) % (2 * np.pi)
+    assert stats.kstest(turned, stats.uniform(np.pi / 3, 4 * np.pi / 3).cdf).pvalue > 1e-3
+    area = np.array([[home.is_reachable(np.array([[x, y]]))[0] and np.hypot(x - 3, y - 2) > 0.5
+                      for y in np.arange(0.05, 4, 0.1)] for x in np.arange(0.05, 6, 0.1)]).reshape(6, 10, 4, 10)
+    expected = area.sum((1, 3)).ravel()  # of each square metre, what is free and beyond the gap
+    found = np.histogram2d(starts[:, 0], starts[:, 1], [np.arange(7), np.arange(5)])[0].ravel()
+    assert (abs(found / len(starts) - expected / expected.sum()) < 0.012).all()
+
+
+def test_test_starts_are_drawn_before_all_else_and_do_not_depend_on_the_gap():
+    home = make_home(800)
+    near, far = (draw_starts(home, t, 0.2, 20, 7, 3, np.random.default_rng(5)) for t in (0.2, 1.0))
+    for name in ("tests", "validation"):
+        np.testing.assert_array_equal(near[name], far[name])
+    np.testing.assert_array_equal(near["tests"], home.free_poses(7, np.random.default_rng(5)))
+
+
+def test_a_gap_that_a_home_has_no_room_for_is_refused_with_the_share_that_was_seen():
+    home = World(room(size=(2.0, 2.0)))
+    with pytest.raises(ValueError, match=r"room: expected room for starts 3 m and 10 degrees off all 5 test starts, "
+                                         r"found 0 among \d+ poses drawn"):
+        draw_starts(home, 3.0, np.radians(10), 10, 5, 1, np.random.default_rng(0))
+
+
+def test_no_pose_is_turned_by_more_than_half_a_circle():
+    home = World(room())
+    with pytest.raises(ValueError, match="found 0 among"):
+        training_starts(home, home.free_poses(3, np.random.default_rng(0)), 0.0, np.pi, 1, np.random.default_rng(0))
+
+
+def test_few_tests_leave_room_in_a_bearing_of_their_own():
+    home, tests = World(room()), np.array([[3.0, 2.0, 0.0]])
+    starts = training_starts(home, tests, 0.0, np.radians(179), 50, np.random.default_rng(0))
+    assert (abs(wrap_angle(starts[:, 2] - np.pi)) < np.radians(1) + 1e-9).all()
