@@ -18,10 +18,11 @@ HOUSE ?= 800
 ALIASING ?= 0.3
 PLAN ?=
 ARGS ?=
+TABLE ?= out/table
 VIEWS := out/data/views-$(NOISE).npz
 HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test lint table bench clean
 .DEFAULT_GOAL := help
 
 help:
@@ -30,6 +31,8 @@ help:
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"
+	@echo "make table   the paper's experiment at full scale, then its report (out/table; most of an hour)"
+	@echo "             ARGS='--quick' a small slice in a minute; more with  $(RUN) -m gnl table --help"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"
 	@echo "make clean   remove .venv and out"
 
@@ -37,6 +40,10 @@ demo: .venv/ready
 	@test -n "$(PLAN)" || $(RUN) -m data_gen home "$(HOME_PLAN)" --seed "$(HOUSE)" --aliasing "$(ALIASING)"
 	@$(RUN) -m data_gen views "$(VIEWS)" --noise "$(NOISE)"
 	@$(RUN) -m gnl demo --plan "$(HOME_PLAN)" --views "$(VIEWS)" --seed "$(SEED)" --noise "$(NOISE)" $(ARGS)
+
+table: .venv/ready
+	@$(RUN) -m gnl table --out "$(TABLE)" $(ARGS)
+	@$(RUN) -m gnl report --out "$(TABLE)"
 
 test: .venv/ready
 	@$(RUN) -m pytest
@@ -56,5 +63,5 @@ clean:
 	    sys.exit(f"gnl: expected python >= 3.10, found {v[0]}.{v[1]}; name another with make PYTHON=...")'
 	@echo "setting up .venv ..."
 	@$(PYTHON) -m venv .venv
-	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test,cluster]'
 	@touch $@

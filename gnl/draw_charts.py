@@ -66,8 +66,8 @@ def _curves(methods, low, high, width, height):
     for i in range(n):
         page.text((at(i, low)[0], height - bottom + 12), str(i + 1), 11, QUIET, "mm")
     page.text((left + (width - left - right) / 2, height - 10), "checkpoint", 12, QUIET, "mm")
-    taken = []
-    for name, values in methods.items():
+    taken = []  # heights of the names, the upper one first so that they keep the order of their lines
+    for name, values in sorted(methods.items(), key=lambda item: -item[1][:, -1].mean()):
         mean, below, above = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
         if name == "Ours":
             band = [at(i, v) for i, v in enumerate(above)] + [at(i, v) for i, v in enumerate(below)][::-1]

@@ -153,7 +153,7 @@ def run_all(senses, robot, grid, plan, starts, seed, **options):
 
 
 def side_by_side(starts):
-    """The starts (n, 3) in as few groups of at most SIDE_BY_SIDE as there can be, of equal size or nearly so."""
+    """The starts (n, ...) in as few groups of at most SIDE_BY_SIDE as there can be, of equal size or nearly so."""
     return np.array_split(starts, -(-len(starts) // SIDE_BY_SIDE))
 
 
@@ -189,16 +189,19 @@ def best_sequence(senses, robot, grid, starts, seed, rules=None):
     """The fixed action sequence that leaves most belief in the true place, over `starts` (n, 3): (L,).
 
     Of 41 sequences the luckiest looks best, so they race: after each round the best third goes on, from twice as many
-    new starts. All runs of a round see the same starts and the same noise.
+    new starts. In a round every sequence is run from every start.
     """
     length = (rules or Rules()).length
     sequences, n_rounds, first = planners.sequences(length), length, 0
     total = np.zeros(len(sequences))
     for rank, child in enumerate(_seed(seed).spawn(n_rounds)):
         size = max(1, len(starts) * 2 ** rank // (2 ** n_rounds - 1))
-        part = starts[np.arange(first, first + size) % len(starts)]
-        total += [run_all(senses, robot, grid, planners.scan(sequence), part, child, rules=rules).belief[:, -1].sum()
-                  for sequence in sequences]
+        groups = side_by_side(np.arange(size * len(sequences)))
+        for group, grandchild in zip(groups, child.spawn(len(groups)), strict=True):
+            start, which = np.divmod(group, len(sequences))
+            record = run(senses, robot, grid, planners.scan(sequences[which]), starts[(first + start) % len(starts)],
+                         grandchild, rules)
+            np.add.at(total, which, record.belief[:, -1])
         best = np.argsort(-total, kind="stable")[:-(-len(total) // 3)]
         sequences, total, first = sequences[best], total[best], first + size
     return sequences[0]

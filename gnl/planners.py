@@ -22,9 +22,9 @@ def chance(_step, states, rng):
 
 
 def scan(sequence):
-    """The same actions in every episode, whatever there is to see."""
+    """The same actions in every episode, whatever there is to see: (L,), or (B, L) one for each robot."""
     def plan(step, states, _rng):
-        return np.full(len(states), sequence[step])
+        return np.broadcast_to(np.asarray(sequence)[..., step], len(states))
     return plan
 
 

@@ -190,6 +190,7 @@ def cost(costs):
     views = sum(of_cell["views"] for of_cell in costs)
     stages = sorted({name for of_cell in costs for name in of_cell["of stages"]})
     ms = {name: 1000 * sum(of_cell["of stages"].get(name, 0) for of_cell in costs) / views for name in stages}
+    ms["labels and graph"] = ms.pop("labels", 0) + ms.pop("graph")
     rows = [[name, f"{value:.2f}", VIEW_MS.get(name, "")] for name, value in sorted(ms.items(), key=lambda x: -x[1])]
     seconds = sum(of_cell["seconds"] for of_cell in costs)
     rows.append(["all", f"{1000 * seconds / views:.2f}", 28])

@@ -14,6 +14,7 @@ from .episode import Senses
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from .files import load_arrays, write_whole
 from .gcn import BATCH, EPOCHS
+from .photo import check_noise
 from .terminal import Stage, processes
 from .world import World
 
@@ -29,14 +30,15 @@ class Settings:
     tests: int = 100
     validation: int = 10
     noise: float = 1.0
-    net_epochs: int = 6
+    net_homes: int = 40
     net_views: int = 2400
+    net_epochs: int = 6
     gcn_views: int = 10_000
     gcn_epochs: int = EPOCHS
     gcn_batch: int = BATCH
 
 
-QUICK = Settings(episodes=320, tests=40, net_epochs=1, net_views=800, gcn_views=1500, gcn_epochs=20)
+QUICK = Settings(episodes=320, tests=40, net_views=1200, net_epochs=3, gcn_views=3000, gcn_epochs=25, gcn_batch=64)
 QUICK_GAPS = "0.2/10", "1.0/90"
 
 
@@ -89,7 +91,8 @@ def prepare(out, settings, cells, jobs, pool):
     data, worlds = out / "data", sorted({cell.world for cell in cells})
     draw = [sys.executable, "-m", "data_gen"]
     views = data / "views.npz"
-    programs = [[*draw, "views", views, "--views", settings.net_views, "--noise", settings.noise]]
+    programs = [[*draw, "views", views, "--homes", settings.net_homes, "--views", settings.net_views,
+                 "--noise", settings.noise]]
     programs += [[*draw, "home", data / f"home-{world}.json", "--seed", world] for world in worlds]
     names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
     programs += [[*draw, "starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,
@@ -103,7 +106,7 @@ def prepare(out, settings, cells, jobs, pool):
     rgb_and_labels, views_made_by = load_arrays(views)
     net = learned.segmentation_net(out / "learned", (rgb_and_labels["rgb"], rgb_and_labels["labels"]), views_made_by,
                                    settings.net_epochs, 0, stage)
-    stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of other homes")
+    stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
     senses = {world: Senses(World.load(data / f"home-{world}.json"), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch}
@@ -124,6 +127,7 @@ def check(args):
                                ("tests", settings.tests, 2), ("episodes", settings.episodes, N_CHECKPOINTS)):
         if value < least:
             raise ValueError(f"--{name}: expected at least {least}, found {value}")
+    check_noise(settings.noise, "--noise")
     worlds = [800] if args.quick and args.worlds is WORLDS else [world_of(name) for name in args.worlds]
     gaps = [gap_of(name) for name in args.gaps or (QUICK_GAPS if args.quick else GAPS)]
     return settings, [Cell(world, *gap, args.seed + i) for i in range(args.repeats) for gap in gaps for world in worlds]

@@ -1,10 +1,13 @@
 """Comparisons in pairs: by hand, against scipy, and the interval holds the truth as often as it says."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from gnl.compare import paired_difference
+from gnl.compare import episodes_needed, mcnemar, over_cells, paired_difference
+from gnl.paper import METHODS, WORLDS, table_1
 
 
 @pytest.fixture
@@ -60,3 +63,75 @@ def test_the_interval_holds_the_truth_in_95_of_100_experiments():
 def test_what_makes_no_pairs_is_refused(a, b):
     with pytest.raises(ValueError, match="pairs: expected two equal lists of at least 2 outcomes, found "):
         paired_difference(a, b)
+
+
+def test_the_interval_over_cells_is_scipys_bootstrap_of_their_mean():
+    d = np.random.default_rng(0).normal(0.03, 0.1, 75)
+    mean, *interval = over_cells(d, np.random.default_rng(1))
+    assert mean == pytest.approx(d.mean())
+    scipys = stats.bootstrap((d,), np.mean, method="percentile", rng=np.random.default_rng(2)).confidence_interval
+    assert interval == pytest.approx(scipys, abs=0.001)
+
+
+def test_episodes_of_one_cell_are_no_evidence_of_their_own():
+    """Ten cells that differ: a hundred equal episodes in each make the interval no narrower."""
+    of_cell = np.random.default_rng(0).normal(0, 0.2, 10)
+    _, low, high = over_cells(of_cell, np.random.default_rng(1))
+    assert high - low == pytest.approx(2 * 1.96 * of_cell.std() / np.sqrt(10), rel=0.1)
+
+
+def test_equal_cells_leave_no_doubt():
+    assert over_cells([0.1] * 5, np.random.default_rng(0)) == pytest.approx((0.1, 0.1, 0.1))
+
+
+@pytest.mark.parametrize("cells", [[], [[0.1, 0.2]], 0.3])
+def test_what_are_no_cells_is_refused(cells):
+    with pytest.raises(ValueError, match="differences: expected one for each cell, found shape"):
+        over_cells(cells, np.random.default_rng(0))
+
+
+def test_mcnemars_p_by_hand():
+    # A alone is right in 5 pairs, B alone in 1: p = 2 (1 + 6) / 2^6
+    a, b = np.array([1, 1, 1, 1, 1, 0, 1, 0]), np.array([0, 0, 0, 0, 0, 1, 1, 0])
+    assert mcnemar(a, b) == mcnemar(b, a) == pytest.approx(14 / 64)
+
+
+def test_mcnemars_p_tends_to_the_chi_square_of_the_textbook():
+    rng = np.random.default_rng(0)
+    a, b = rng.random(20_000) < 0.5, rng.random(20_000) < 0.51
+    n_a, n_b = (a & ~b).sum(), (b & ~a).sum()
+    assert mcnemar(a, b) == pytest.approx(stats.chi2.sf((abs(n_a - n_b) - 1) ** 2 / (n_a + n_b), 1), rel=0.02)
+
+
+def test_methods_that_never_differ_are_not_told_apart():
+    assert mcnemar([1, 0, 1], [1, 0, 1]) == 1.0
+
+
+def test_as_many_episodes_as_are_needed_show_the_difference_four_times_in_five():
+    rng, p, q = np.random.default_rng(0), 0.50, 0.60
+    n = episodes_needed(q - p, np.sqrt(p * (1 - p) + q * (1 - q)))
+    assert 380 < n < 400
+    shown = [paired_difference(rng.random(n) < q, rng.random(n) < p)[1] > 0 for _ in range(600)]
+    assert np.mean(shown) == pytest.approx(0.8, abs=0.05)
+
+
+def test_the_papers_own_numbers_have_the_means_that_were_seen_in_them():
+    cells = table_1()
+    assert len(cells) == 75
+    assert {cell[0] for cell in cells} == set(WORLDS)
+    assert cells[800, 1.0, 90] == {"SV": 38, "MV": 52, "Ours": 61, "DA": 54}
+    assert cells[809, 0.2, 10] == {"SV": 33, "MV": 53, "Ours": 56, "DA": 54}
+    found = {pair: over_cells([c[pair[0]] - c[pair[1]] for c in cells.values()], np.random.default_rng(0))
+             for pair in (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"))}
+    assert [round(mean, 1) for mean, _, _ in found.values()] == [9.5, 2.6, -0.2]
+    assert found["Ours", "MV"][1] > 0 > found["DA", "Ours"][1]
+
+
+def test_the_papers_table_is_the_one_beside_the_project_where_it_is():
+    path = Path(__file__).parents[2] / "shared" / "paper" / "table1.csv"
+    rows = path.read_text().splitlines()[1:] if path.exists() else []
+    cells = table_1()
+    for row in rows:
+        world, t_xy_m, t_theta_deg, *numbers = row.split(",")
+        found = cells[int(world[:5]), float(t_xy_m), int(t_theta_deg)]
+        assert [found[name] for name in METHODS] == [float(number) for number in numbers]

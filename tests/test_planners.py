@@ -50,6 +50,12 @@ def test_a_scan_is_its_sequence_whatever_there_is_to_see():
         assert plan(step, STATES[:5], rng()).tolist() == [action] * 5
 
 
+def test_each_robot_may_have_a_scan_of_its_own():
+    plan = planners.scan(np.array([[LEFT, RIGHT], [FORWARD, LEFT]]))
+    assert plan(0, STATES[:2], rng()).tolist() == [LEFT, FORWARD]
+    assert plan(1, STATES[:2], rng()).tolist() == [RIGHT, LEFT]
+
+
 @pytest.mark.parametrize(("q", "wanted"), [
     ((1, 2, 3), (0, 0, 1)), ((-1, -3, -2), (1, 0, 0)), ((0, 5, 5), (0, 1 / 2, 1 / 2)),
     ((7, 7, 1e-9), (1 / 2, 1 / 2, 0)), ((0, 0, 0), (1 / 3, 1 / 3, 1 / 3)), ((-2, -2, -2), (1 / 3, 1 / 3, 1 / 3))])

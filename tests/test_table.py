@@ -1,0 +1,199 @@
+"""The table at its smallest: the same bytes with one process, with two, after kills, on a cluster; and its refusals."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from gnl import table
+from gnl.__main__ import main
+from gnl.experiment import Cell
+
+TINIEST = table.Settings(episodes=10, tests=4, validation=2, net_homes=1, net_views=16, net_epochs=1, gcn_views=64,
+                          gcn_epochs=1)
+OPTIONS = ["--quick", "--gaps", "0.2/10", "0.6/50", "1.0/90"]
+NAMES = ["800-0.2m-10deg-seed0", "800-0.6m-50deg-seed0", "800-1m-90deg-seed0"]
+
+
+def command(out, *options):
+    code = f"from gnl import table; table.QUICK = table.{TINIEST}; from gnl.__main__ import main; main()"
+    return [sys.executable, "-W", "error", "-c", code, "table", *OPTIONS, "--out", str(out), *map(str, options)]
+
+
+def run(out, *options):
+    """A run to its end: exit status, output."""
+    done = subprocess.run(command(out, *options), capture_output=True, text=True, timeout=200)
+    return SimpleNamespace(status=done.returncode, out=done.stdout, err=done.stderr)
+
+
+def cells(out):
+    """Bytes of the finished cells."""
+    return {path.name: path.read_bytes() for path in sorted((out / "cells").glob("*"))}
+
+
+@pytest.fixture(autouse=True)
+def tiniest(monkeypatch):
+    """The same settings for the command in this process."""
+    monkeypatch.setattr(table, "QUICK", TINIEST)
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    """A run with one process that nobody disturbed."""
+    out = tmp_path_factory.mktemp("table") / "one"
+    done = run(out, "--jobs", 1)
+    assert (done.status, done.err) == (0, "")
+    return SimpleNamespace(folder=out, cells=cells(out), out=done.out)
+
+
+@pytest.fixture
+def prepared(reference, tmp_path):
+    """A folder with homes, starts, net and GCN, but no cell yet."""
+    out = tmp_path / "out"
+    shutil.copytree(reference.folder, out, ignore=shutil.ignore_patterns("cells", "costs"))
+    return out
+
+
+def test_every_cell_is_a_file_with_all_that_is_needed_to_judge_it(reference):
+    assert list(reference.cells) == [f"{name}.json" for name in NAMES]
+    for name, data in reference.cells.items():
+        result = json.loads(data)
+        assert Cell(**result["cell"]).name == name.removesuffix(".json")
+        assert len(result["sequence"]) == 4
+        assert len(result["checkpoints"]) == len(result["validation"]) == 10
+        for outcome, n in [(o, 4) for o in (*result["tests"].values(), *result["checkpoints"])] + [
+                (o, 2) for o in result["validation"]]:
+            assert [len(look) for look in outcome["place"]] == [n] * 5
+            for right, where in zip(outcome["place"], outcome["location"], strict=True):
+                assert set(right) <= {"0", "1"}
+                assert all(w == "1" for r, w in zip(right, where, strict=True) if r == "1")  # who knows both knows one
+        beside = json.loads((reference.folder / "costs" / name).read_bytes())
+        assert {"seconds", "views", "versions", "machine", "peak MB"} <= beside.keys()
+
+
+def test_the_first_look_is_the_same_for_all_methods(reference):
+    for data in reference.cells.values():
+        result = json.loads(data)
+        first = {outcome["place"][0] for outcome in (*result["tests"].values(), *result["checkpoints"])}
+        assert len(first) == 1
+
+
+def test_two_processes_give_the_same_bytes_however_often_they_are_killed(reference, prepared):
+    for n_cells in (0, 1, 2):
+        process = subprocess.Popen(command(prepared, "--jobs", 2), stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, start_new_session=True)
+        try:
+            while len(list(prepared.glob("cells/*.json"))) < n_cells and process.poll() is None:
+                time.sleep(0.01)
+            time.sleep(0.3 * (n_cells == 0))  # before the first is done
+        finally:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        assert {name: data for name, data in cells(prepared).items() if not name.startswith(".")}.items() <= (
+            reference.cells.items())
+    done = run(prepared, "--jobs", 2)
+    assert (done.status, done.err) == (0, "")
+    assert {name: data for name, data in cells(prepared).items() if not name.startswith(".")} == reference.cells
+
+
+def test_a_second_run_has_nothing_to_do(reference):
+    before = {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
+    done = run(reference.folder, "--jobs", 8)
+    assert done.out == f"3 cells in {reference.folder / 'cells'}; python -m gnl report --out {reference.folder}\n"
+    assert before == {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
+
+
+def test_a_cluster_gives_the_same_bytes(reference, prepared):
+    from dask.distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+        main_here(prepared, "--dask", cluster.scheduler_address)
+    assert cells(prepared) == reference.cells
+
+
+def main_here(out, *options):
+    """The command in this process: its exit status."""
+    with pytest.raises(SystemExit) as exit:
+        main(["table", *OPTIONS, "--out", str(out), *map(str, options)])
+    return exit.value.code
+
+
+def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, prepared, capsys):
+    shutil.copytree(reference.folder / "cells", prepared / "cells")
+    shutil.copytree(reference.folder / "costs", prepared / "costs")
+    damaged = prepared / "cells" / f"{NAMES[1]}.json"
+    damaged.write_bytes(reference.cells[damaged.name][:100])
+    assert main_here(prepared, "--jobs", 1) == 0
+    err = capsys.readouterr().err
+    assert err.startswith(f"{damaged}: expected ")
+    assert err.count("\n") == 1
+    assert damaged.with_suffix(".damaged").read_bytes() == reference.cells[damaged.name][:100]
+    assert damaged.read_bytes() == reference.cells[damaged.name]
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    (["--worlds", "17"], "--worlds: expected seeds of homes, 800 or more, found '17'"),
+    (["--worlds", "kitchen"], "--worlds: expected seeds of homes, 800 or more, found 'kitchen'"),
+    (["--gaps", "0.3/10"], "found '0.3/10'"), (["--gaps", "near"], "found 'near'"),
+    (["--jobs", "0"], "--jobs: expected at least 1, found 0"), (["--jobs", "-2"], "found -2"),
+    (["--episodes", "9"], "--episodes: expected at least 10, found 9"),
+    (["--tests", "1"], "--tests: expected at least 2, found 1"), (["--seed", "-1"], "--seed: expected at least 0"),
+    (["--repeats", "0"], "--repeats: expected at least 1, found 0"), (["--noise", "-1"], "--noise: expected 0..10")])
+def test_an_option_that_cannot_be_is_one_line_and_nothing_is_written(tmp_path, capsys, options, words):
+    assert main_here(tmp_path / "out", *options) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("python -m gnl: --")
+    assert words in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_results_of_other_settings_are_refused_by_the_name_of_the_setting(reference, capsys):
+    assert main_here(reference.folder, "--episodes", "30") == 2
+    err = capsys.readouterr().err
+    assert "expected results of episodes 30, found some of 10" in err
+    assert err.count("\n") == 1
+    assert cells(reference.folder) == reference.cells
+
+
+def test_where_nobody_listens_is_one_line(prepared, capsys):
+    assert main_here(prepared, "--dask", "tcp://127.0.0.1:9") == 2
+    err = capsys.readouterr().err
+    assert "127.0.0.1:9" in err
+    assert err.count("\n") == 1
+
+
+def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys, monkeypatch):
+    write, written = table.write_whole, []
+
+    def full(path, data):
+        if path.parent.name == "cells" and written:
+            raise OSError(28, "No space left on device", str(path))
+        written.append(path)
+        write(path, data)
+
+    monkeypatch.setattr(table, "write_whole", full)
+    assert main_here(prepared, "--jobs", 1) == 2
+    err = capsys.readouterr().err
+    assert "No space left on device" in err
+    assert err.count("\n") == 1
+    monkeypatch.setattr(table, "write_whole", write)
+    assert main_here(prepared, "--jobs", 1) == 0
+    assert cells(prepared) == reference.cells
+
+
+def test_the_whole_table_is_75_cells_and_repeats_multiply_it():
+    args = SimpleNamespace(worlds=table.WORLDS, gaps=None, episodes=None, tests=None, noise=None, seed=3, repeats=2,
+                           jobs=1, quick=False)
+    settings, cells = table.check(args)
+    assert settings == table.Settings()
+    assert len(set(cells)) == 150
+    assert {cell.world for cell in cells} == {800, 801, 809}
+    assert {cell.seed for cell in cells} == {3, 4}
+    assert len({(cell.t_xy_m, cell.t_theta_deg) for cell in cells}) == 25
