@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import demo, draw_graph, report, table
+from . import ablate, demo, draw_graph, report, table
 from .terminal import guarded
 
 
@@ -21,6 +21,9 @@ def main(argv=None):
     command = commands.add_parser("table", help="the paper's Table I: every gap, world and method")
     table.add_arguments(command)
     command.set_defaults(run=table.run)
+    command = commands.add_parser("ablate", help="what the paper leaves open: the effect of other choices")
+    ablate.add_arguments(command)
+    command.set_defaults(run=ablate.run)
     command = commands.add_parser("report", help="the table as Markdown and pictures, with intervals")
     report.add_arguments(command)
     command.set_defaults(run=report.run)

@@ -11,35 +11,38 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .classes import CEILING, FLOOR
+from .classes import CEILING, FLOOR, N_CLASSES
 from .photo import photograph
-from .strip import FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
+from .strip import FACES, FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
 
 HEIGHT_M = 1.25  # CHOICE: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
+RAYS_AT_ONCE = 4096  # as many as stay near the processor
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
-CEILING_BIT, FLOOR_BIT = MOST_SURFACES, MOST_SURFACES + 1
-RAYS_AT_ONCE, RAYS_OF_PHOTO = 4096, 1024  # as many as stay near the processor; a photograph needs much room for each
+CEILING_BIT, FLOOR_BIT, BOTH = MOST_SURFACES, MOST_SURFACES + 1, 63  # BOTH: the bits of ceiling and floor together
+MASKS = np.append(1 << np.arange(63), 1 << CEILING_BIT | 1 << FLOOR_BIT)
 
 
 @dataclass(frozen=True)
 class Surfaces:
-    """What the columns of some views show: S surfaces, near to far in each ray, and R runs of pixels.
+    """What the columns of some views show: S surfaces of boxes, and R runs of pixels.
 
-    Behind the surfaces of boxes come the ceiling of each ray and then the floor of each ray. A run is a piece of a
-    column that shows one surface; runs lie one behind the other, column by column from the top, and fill the views.
+    A run is a piece of a column that shows one surface; runs lie one behind the other, column by column from the
+    top, and fill the views. Behind the surfaces of boxes come two more, for all ceilings and for all floors.
     """
 
-    ray: np.ndarray  # (S,) int, view * C + column
-    box: np.ndarray  # (S,) int; N for a ceiling, N + 1 for a floor
-    face: np.ndarray  # (S,) one of the four sides, TOP or UNDERSIDE
-    w: np.ndarray  # (S,) inverse depth of a side
+    face: np.ndarray  # (S + 2,) int, box * FACES + one of its sides, TOP or UNDERSIDE; box N ceiling, N + 1 floor
+    w: np.ndarray  # (S + 2,) inverse depth of a side; 0 for what lies flat
     run_surface: np.ndarray  # (R,) int
+    run_ray: np.ndarray  # (R,) int, view * C + column
     run_length: np.ndarray  # (R,) int, pixels
 
-    def paint(self, of_surface, size):
-        """Spread values of surfaces (S,) over all pixels, column by column: (B, C, H)."""
-        return np.repeat(of_surface[self.run_surface], self.run_length).reshape(-1, size, size)
+    def labels(self, world):
+        """Class and length of the runs, neighbours of one class made one: many short ones are slow to paint."""
+        of_box = np.append(world.label, np.array([CEILING, FLOOR], np.uint8))
+        label = of_box[self.face // FACES].take(self.run_surface)
+        first = np.flatnonzero(np.diff(label, prepend=np.uint8(N_CLASSES)))
+        return label[first], np.add.reduceat(self.run_length, first)
 
 
 def render(world, poses, rng, size=SIZE_PX, noise=1.0):
@@ -49,29 +52,29 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0):
     noise : appearance noise of the photograph (see photo.py); 0 is a clean drawing
     """
     poses = np.asarray(poses, float)
-    rgb = np.empty((len(poses), size, size, 3), np.uint8)
-    labels = np.empty((len(poses), size, size), np.uint8)
-    for part in _chunks(len(poses), RAYS_OF_PHOTO // size):
+    rgb, runs = np.empty((len(poses), size, size, 3), np.uint8), []
+    for part in _chunks(len(poses), size):
         surfaces = look(world, poses[part], size)
-        labels[part] = _labels(world, surfaces, size)
         rgb[part] = photograph(world, poses[part], surfaces, size, HEIGHT_M, rng, noise)
-    return rgb, labels
+        runs.append(surfaces.labels(world))
+    return rgb, _paint(runs, size)
 
 
 def true_labels(world, poses, size=SIZE_PX):
     """True labels alone: poses (B, 3) -> (B, H, H) uint8."""
     poses = np.asarray(poses, float)
-    columns = np.empty((len(poses), size, size), np.uint8)  # an image as it is painted, column by column
-    for part in _chunks(len(poses), RAYS_AT_ONCE // size):
-        columns[part] = _labels(world, look(world, poses[part], size), size).transpose(0, 2, 1)
-    return columns.transpose(0, 2, 1)
+    return _paint([look(world, poses[part], size).labels(world) for part in _chunks(len(poses), size)], size)
+
+
+def _paint(runs, size):
+    """Images (B, H, H) uint8 of runs (label, length) in parts: all in one stroke, one column behind the other."""
+    label, length = (np.concatenate(parts) for parts in zip(*runs, strict=True))
+    return np.repeat(label, length).reshape(-1, size, size).transpose(0, 2, 1)
 
 
 def look(world, poses, size=SIZE_PX):
     """What each column of each view shows: poses (B, 3) -> Surfaces."""
-    strip = cast(world, poses, size)
-    pile = _pile(world, strip, size)
-    return _visible(pile, len(poses) * size, size, len(world.label))
+    return _visible(_pile(world, cast(world, poses, size), size), len(poses) * size, size, len(world.label))
 
 
 def row_of(z, w, size):
@@ -80,30 +83,31 @@ def row_of(z, w, size):
 
 
 def _pile(world, strip, size):
-    """Surfaces of each ray, near to far: (ray, box, face, w, first row, end row), those without a pixel left out."""
-    z0, z1 = (z[strip.box] for z in world.z.T)
-    top, foot = row_of(z1, strip.w_in, size), row_of(z0, strip.w_in, size)
-    capped = np.flatnonzero((z1 < HEIGHT_M) | (z0 > HEIGHT_M))
-    from_above = z1[capped] < HEIGHT_M
-    back = row_of(np.where(from_above, z1[capped], z0[capped]), strip.w_out[capped], size)
+    """Surfaces of each ray, near to far: (ray, face, w, first row, end row), those without a pixel left out."""
+    box, w = strip.box, strip.w_in
+    low, high = world.z.T
+    from_above, from_below = high < HEIGHT_M, low > HEIGHT_M
+    capped = np.flatnonzero((from_above | from_below)[box])  # crossings that show a top or an underside, too
+    w_front, w_back, capped_box = w[capped], strip.w_out(capped), box[capped]
 
-    begin = np.concatenate([top, np.where(from_above, back, foot[capped])])
-    end = np.concatenate([foot, np.where(from_above, top[capped], back)])
-    begin, end = (np.ceil(y - 0.5).clip(0, size).astype(int) for y in (begin, end))
-    face = np.concatenate([strip.side, np.where(from_above, TOP, UNDERSIDE)])
-    crossing = np.concatenate([np.arange(len(top)), capped])
+    def row(z, w):  # the first pixel whose middle lies below
+        return (row_of(z, w, size) + 0.5).clip(0, size).astype(np.int32)
 
-    shown = np.flatnonzero(end > begin)
-    crossing, face = crossing[shown], face[shown]
+    level = np.where(from_above, high, low)[capped_box]
+    front, back = row(level, w_front), row(level, w_back)
+    begin = np.append(row(high[box], w), np.minimum(front, back))
+    end = np.append(row(low[box], w), np.maximum(front, back))
+    ray = np.append(strip.ray, strip.ray[capped])
+    face = np.append(box * FACES + strip.side, capped_box * FACES + np.where(from_above, TOP, UNDERSIDE)[capped_box])
     # A top belongs right behind its front; but what stands on it comes between the two.
-    late = (face >= TOP) & world.carries[strip.box[crossing]]
-    nearness = np.where(late, strip.w_out[crossing], strip.w_in[crossing])
+    nearness = np.append(w, np.where(world.carries[capped_box], w_back, w_front))
+
     # Sorting numbers of which the last digits are the place in the list is faster than asking for the order.
-    far = ((1 - nearness * NEAREST_M) * 2 ** 30).astype(int)
-    bits = len(shown).bit_length()
-    order = np.sort(((strip.ray[crossing] << 31) + far << bits) + np.arange(len(shown))) & (1 << bits) - 1
-    crossing, shown = crossing[order], shown[order]
-    return strip.ray[crossing], strip.box[crossing], face[order], strip.w_in[crossing], begin[shown], end[shown]
+    shown, bits = np.flatnonzero(end > begin), len(begin).bit_length()
+    far = ((1 - nearness[shown] * NEAREST_M) * 2 ** 30).astype(int)
+    number = np.sort(((ray[shown] << 31) + far << bits) + shown)
+    shown = number & (1 << bits) - 1
+    return number >> 31 + bits, face[shown], np.append(w, np.zeros(len(capped)))[shown], begin[shown], end[shown]
 
 
 def _visible(pile, n_rays, size, n_boxes):
@@ -113,36 +117,32 @@ def _visible(pile, n_rays, size, n_boxes):
     off; between two such edges one sees the lowest bit that is on. The two highest are those of ceiling and floor:
     they change places where a column begins and at half its height.
     """
-    ray, box, face, w, begin, end = pile
+    ray, face, w, begin, end = pile
     S, H, column = len(ray), size, np.arange(n_rays)
-    first = np.searchsorted(ray, column)  # of each ray's surfaces
+    count = np.bincount(ray, minlength=n_rays)
+    first = np.cumsum(count) - count  # of each ray's surfaces
     bit = np.arange(S) - first[ray]
-    if S and bit.max() >= MOST_SURFACES:
+    if count.max(initial=0) > MOST_SURFACES:
         return _visible([a[bit < MOST_SURFACES] for a in pile], n_rays, size, n_boxes)
 
-    both = 63  # stands for the bits of ceiling and floor together
-    mask = np.append(1 << np.arange(63), 1 << CEILING_BIT | 1 << FLOOR_BIT)
-    top, start = column * (H * 64) + both, ray * (H * 64) + bit
-    edge = np.sort(np.concatenate([start + begin * 64, start + end * 64, top, top + H // 2 * 64]))
+    # An edge is a number: its last six digits are the bit, the others the pixel. Short numbers are sorted faster.
+    short = np.int32 if n_rays * H < 1 << 25 else np.int64
+    start, top = ((ray * H << 6) + bit).astype(short), ((column * H << 6) + BOTH).astype(short)
+    edge = np.sort(np.concatenate([start + (begin << 6), start + (end << 6), top, top + (H // 2 << 6)]))
+    on = np.bitwise_xor.accumulate(MASKS.take(edge & 63)) ^ 1 << FLOOR_BIT
     pixel = edge >> 6
-    on = np.bitwise_xor.accumulate(mask[edge & 63]) ^ 1 << FLOOR_BIT
     length = np.append(pixel[1:], n_rays * H) - pixel
-    run = np.flatnonzero(length)
-    on, ray_of_run = on[run], pixel[run] // H
-    lowest = np.frexp((on & -on).astype(float))[1] - 1
-    background = S + ray_of_run + np.where(lowest == FLOOR_BIT, n_rays, 0)
-    surface = np.where(lowest >= CEILING_BIT, background, first[ray_of_run] + lowest)
-    return Surfaces(np.concatenate([ray, column, column]),
-                    np.concatenate([box, np.full(n_rays, n_boxes), np.full(n_rays, n_boxes + 1)]),
-                    np.concatenate([face, np.full(n_rays, UNDERSIDE), np.full(n_rays, TOP)]),
-                    np.concatenate([w, np.ones(2 * n_rays)]), surface, length[run])
+    run = np.flatnonzero(length != 0)
+    on, run_ray = on[run], pixel[run] // H
+    lowest = np.bitwise_count(on ^ on - 1) - 1  # the digits up to the lowest that is on, less that one
+    surface = first.take(run_ray) + lowest
+    back = np.flatnonzero(lowest >= CEILING_BIT)
+    surface[back] = S + (lowest[back] == FLOOR_BIT)
+    ceiling, floor = n_boxes * FACES + UNDERSIDE, (n_boxes + 1) * FACES + TOP
+    return Surfaces(np.append(face, [ceiling, floor]), np.append(w, [0, 0]), surface, run_ray, length[run])
 
 
-def _labels(world, surfaces, size):
-    of_box = np.append(world.label, np.array([CEILING, FLOOR], np.uint8))
-    return surfaces.paint(of_box[surfaces.box], size).transpose(0, 2, 1)
-
-
-def _chunks(n_views, at_once):
-    step = max(1, at_once)
-    return [slice(i, min(i + step, n_views)) for i in range(0, n_views, step)]
+def _chunks(n_views, size):
+    """Slices of the views, as many in each as stay near the processor; one even of no views."""
+    step = max(1, RAYS_AT_ONCE // size)
+    return [slice(i, min(i + step, n_views)) for i in range(0, max(1, n_views), step)]

@@ -140,7 +140,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             kept[name].append(value)
         if watch:
             watch(step, poses=poses, scores=scores, filter=belief, pooled=pooled, seen=seen, actions=actions,
-                  states=states, right=answers == places, belief=in_place)
+                  states=states, places=places, right=answers == places, belief=in_place)
     return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
 
 
@@ -157,19 +157,23 @@ def side_by_side(starts):
     return np.array_split(starts, -(-len(starts) // SIDE_BY_SIDE))
 
 
-def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1000, progress=None, store=None):
+def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1000, store=None, watch=None,
+               progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
     A checkpoint is taken when the robots that pass it, side by side, have come to their ends.
-    progress(share done, recent share of right answers);  store : an empty NNQL of other settings
+    store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`
+    progress(share done, recent share of right answers)
     """
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
 
-    def learn(step, seen, actions, states, right, belief, **_):
+    def learn(step, seen, actions, states, right, belief, **others):
         if step:
             done = np.full(len(actions), step == rules.length)
             senses.timed("learn", store.learn, seen, actions, rules.reward(right, belief, done), states, done)
+        if watch:
+            watch(step, seen=seen, actions=actions, states=states, right=right, belief=belief, **others)
 
     groups, done, recent = side_by_side(starts), 0, []
     for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True):

@@ -18,6 +18,7 @@ from importlib.metadata import version
 import numpy as np
 
 from . import episode, planners
+from .options import Experience, Options
 from .places import PlaceGrid
 from .robot import Robot
 
@@ -52,21 +53,23 @@ def run_cell(cell, senses, starts):
     starts  : "training", "validation" and "tests" (n, 3) each
     returns : the outcomes, and what they cost, both as dicts for JSON
     """
-    began = time.time(), time.process_time()
+    began = now()
     robot, grid = Robot(senses.world), PlaceGrid(senses.world)
     learning, racing, testing, validating = np.random.SeedSequence(cell.entropy).spawn(4)
     training = starts["training"]
+    lived = Experience()
     store = episode.train_nnql(senses, robot, grid, training, learning,
-                               checkpoint_every=len(training) // N_CHECKPOINTS)
+                               checkpoint_every=len(training) // N_CHECKPOINTS, watch=lived.watch)
+    options = senses.timed("options", Options, lived, episode.LENGTH)
     sequence = episode.best_sequence(senses, robot, grid, training[:SCAN_STARTS], racing)
 
     def test(plan, poses, seed):
         return outcomes(grid, episode.run_all(senses, robot, grid, plan, poses, seed))
 
-    tests = {name: test(plan, starts["tests"], testing)
-             for name, plan in {"MV": planners.chance, "Scan": planners.scan(sequence)}.items()}
+    plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours+": planners.go_on(options)}
+    tests = {name: test(plan, starts["tests"], testing) for name, plan in plans.items()}
     past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
-    result = {"cell": asdict(cell), "sequence": sequence.tolist(), "tests": tests,
+    result = {"name": cell.name, "cell": asdict(cell), "sequence": sequence.tolist(), "tests": tests,
               "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
               "validation": [test(plan, starts["validation"], validating) for plan in past]}
     return result, costs(senses, began, sum(map(len, store.values)))
@@ -86,6 +89,11 @@ def strings(right):
 def arrays(strings):
     """The other way round: T strings -> (n, T) bool."""
     return np.array([[one == "1" for one in look] for look in strings]).T
+
+
+def now():
+    """Seconds on the clock and of this process."""
+    return time.time(), time.process_time()
 
 
 def costs(senses, began, n_pairs):

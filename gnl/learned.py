@@ -24,6 +24,14 @@ def digest(settings):
     return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()[:8]
 
 
+def fingerprint(params):
+    """Eight hex digits of a dict of arrays, to the last bit."""
+    whole = hashlib.sha256()
+    for name, array in sorted(params.items()):
+        whole.update(f"{name} {array.dtype} {array.shape}".encode() + array.tobytes())
+    return whole.hexdigest()[:8]
+
+
 def path_of(folder, name, settings):
     """The file of the part `name` made with `settings`."""
     return Path(folder) / f"{name}-{digest(settings)}.npz"
@@ -37,7 +45,8 @@ def kept(folder, name, settings, load, learn):
 
 def segmentation_net(folder, views, views_made_by, epochs, seed, stage):
     """Weights of the net trained on `views` (rgb, labels)."""
-    settings = {"views": views_made_by, "epochs": epochs, "seed": seed}
+    settings = {"views": views_made_by, "epochs": epochs, "seed": seed,
+                "start": fingerprint(segnet.new_params(np.random.default_rng(seed)))}  # tells a net of other layers
 
     def learn(path):
         rng = np.random.default_rng(seed)

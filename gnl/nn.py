@@ -9,50 +9,38 @@
 import numpy as np
 
 
-def conv_forward(x, w, b, stride=1):
+def conv_forward(x, w, b):
     """3 x 3 convolution with a border of zeros: every output pixel is a linear map of nine input pixels.
 
-        out[i, j] = b + sum over u, v in 0..2 of x[stride i + u - 1, stride j + v - 1] w[u, v]
+        out[i, j] = b + sum over u, v in 0..2 of x[i + u - 1, j + v - 1] w[u, v]
 
-    x (B, H, W, C), w (3, 3, C, F), b (F,) -> out (B, H / stride, W / stride, F); cache: patches, w, stride
-    H and W are multiples of the stride
+    x (B, H, W, C), w (3, 3, C, F), b (F,) -> out (B, H, W, F); cache: patches (B H W, 9 C), w
     """
     B, H, W, C = x.shape
     padded = np.zeros((B, H + 2, W + 2, C), x.dtype)
     padded[:, 1:-1, 1:-1] = x
-    # The three pixels of a patch's row lie side by side: 3 C numbers in one piece.
+    # The three pixels of a patch's row lie side by side: copied as one piece, an item of 3 C numbers.
     s0, s1, s2, s3 = padded.strides
-    h, k = H // stride, W // stride
-    rows = np.lib.stride_tricks.as_strided(padded, (B, h, k, 3, 3 * C), (s0, stride * s1, stride * s2, s1, s3))
-    patches = rows.reshape(B * h * k, 9 * C)
+    rows = np.ndarray((B, H, W, 3), f"V{3 * C * s3}", padded, strides=(s0, s1, s2, s1))
+    patches = rows.copy().view(x.dtype).reshape(B * H * W, 9 * C)
     out = patches @ w.reshape(9 * C, -1)
     out += b
-    return out.reshape(B, h, k, -1), (patches, w, stride)
+    return out.reshape(B, H, W, -1), (patches, w)
 
 
 def conv_backward(dout, cache):
-    """dout (B, h, k, F) -> dx (B, H, W, C), dw, db: each patch gets its share, and patches overlap."""
-    _, w, stride = cache
-    (B, h, k, F), C = dout.shape, w.shape[2]
-    dpatches = (dout.reshape(-1, F) @ w.reshape(-1, F).T).reshape(B, h, k, 3, 3, C)
-    dpadded = np.zeros((B, stride * h + 2, stride * k + 2, C), dout.dtype)
-    for u in range(3):
-        for v in range(3):
-            dpadded[:, u:u + stride * h:stride, v:v + stride * k:stride] += dpatches[:, :, :, u, v]
-    return dpadded[:, 1:-1, 1:-1], *conv_backward_weights(dout, cache)
-
-
-def conv_backward_weights(dout, cache):
-    """dw (3, 3, C, F) and db (F,) alone, for a first layer: no one asks for the gradient of the image."""
-    patches, w, _ = cache
+    """dout (B, H, W, F) -> dx (B, H, W, C), dw, db: what went out at [u, v] comes back at [2 - u, 2 - v]."""
+    patches, w = cache
+    dx, _ = conv_forward(dout, w[::-1, ::-1].swapaxes(2, 3), np.zeros(w.shape[2], w.dtype))
     dflat = dout.reshape(-1, w.shape[3])
-    return (patches.T @ dflat).reshape(w.shape), dflat.sum(0)
+    return dx, (patches.T @ dflat).reshape(w.shape), dflat.sum(0)
 
 
-def linear_forward(x, w, b):
+def linear_forward(x, w, b=None):
     """The same linear map at every pixel (a 1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F)."""
     out = x.reshape(-1, w.shape[0]) @ w  # one product for all pixels, not one for each row of the image
-    out += b
+    if b is not None:
+        out += b
     return out.reshape(*x.shape[:-1], -1), (x, w)
 
 

@@ -3,13 +3,18 @@
 Each object has a colour of its own, and the colours of the classes overlap. Light, texture, distance, exposure and
 the sensor change it further. One dial, `noise`, scales all that a clean drawing would not have.
 
-    rgb = albedo * facing * distance * gradient * texture * exposure + sensor noise
+    rgb = albedo * facing * exposure * distance * gradient * texture + sensor
+
+    albedo    the object's own colour                      facing    of a face: brighter towards the light
+    exposure  of the view, and of each of its colours      distance  0.6 + 0.4 exp(-depth / 5 m)
+    gradient  of the light across the view                 texture   1 + contrast * sin(waves on the surface)
+    sensor    noise of each pixel and colour
 """
 
 import numpy as np
 
 from .classes import CEILING, FLOOR
-from .strip import TOP, UNDERSIDE, slopes
+from .strip import FACES, TOP, UNDERSIDE, slopes
 
 MOST_NOISE = 10.0
 SUN_RAD = 0.8  # bearing from which the light comes, so that two sides of a box differ
@@ -23,86 +28,101 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
     """Colours of views: poses (B, 3) and what they show -> rgb (B, H, C, 3) uint8.
 
     Draws the same random numbers whatever there is to see. Most of the time goes into passes over all pixels: so
-    there are few, each works in place, and all that the pixels of a surface share is computed once for each surface.
+    there are few, each works in place, and all that the pixels of a run share is computed once for each run.
     """
     B, H, f = len(poses), size, np.float32
-    exposure = np.exp(noise * EXPOSURE_STD * rng.standard_normal((B, 1)))
-    gain = 255 * exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3)))
+    exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((B, 1)))
+    exposure = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3)))
     across, down = (noise * GRADIENT_STD * rng.standard_normal((2, B, 1, 1))).astype(f)
     grit = rng.integers(2 ** 64, size=(3, -(-B * H * H // 8)), dtype=np.uint64).view(np.int8)  # eight a draw
     grit = grit[:, :B * H * H].reshape(3, B, H, H)
 
-    near, near_up, phase, ahead, upward, contrast, *albedo = _table(world, poses, surfaces, gain, H, height_m)
-    surface = surfaces.paint(np.arange(len(surfaces.ray)), H)  # of each pixel, (B, C, H)
+    near, near_up, phase, ahead, upward, contrast, *colours = _of_runs(world, poses, surfaces, exposure, H, height_m)
     up = slopes(H).astype(f)  # up / ahead of each row
     left = up[:, None]  # left / ahead of each column
 
-    depth = near_up.take(surface)
+    def pixels(of_run):  # (B, C, H)
+        return np.repeat(of_run, surfaces.run_length).reshape(B, H, H)
+
+    # depth = 1 / (near + near_up * up), FARTHEST_M at most
+    depth = pixels(near_up)
     depth *= up
-    depth += near.take(surface)
+    depth += pixels(near)
     np.maximum(depth, f(1 / FARTHEST_M), out=depth)
     np.reciprocal(depth, out=depth)
 
-    texture = upward.take(surface)
+    # texture = 1 + noise * contrast * sin(phase + depth * (ahead + upward * up))
+    texture = pixels(upward)
     texture *= up
-    texture += ahead.take(surface)
+    texture += pixels(ahead)
     texture *= depth
-    texture += phase.take(surface)
+    texture += pixels(phase)
     np.sin(texture, out=texture)
-    texture *= contrast.take(surface)
-    texture *= f(noise)
+    texture *= pixels(contrast * f(noise))
     texture += 1
 
-    light = depth
-    light *= f(-1 / 5)
-    np.exp(light, out=light)
-    light *= f(0.4)
-    light += f(0.6)
-    light *= (1 + across * left) + down * up
+    # distance = 0.6 + 0.4 * exp(-depth / 5)
+    distance = np.multiply(depth, f(-1 / 5), out=depth)
+    np.exp(distance, out=distance)
+    distance *= f(0.4)
+    distance += f(0.6)
+
+    gradient = (1 + across * left) + down * up
+    light = np.multiply(distance, gradient, out=distance)
     light *= texture
 
     rgb = np.empty((B, H, H, 3), np.uint8)
     for c in range(3):
-        colour = albedo[c].take(surface)
-        colour *= light
-        colour += grit[c] * f(noise * SENSOR)
+        colour = pixels(colours[c])  # albedo * facing * exposure
+        colour *= light  # * distance * gradient * texture
+        colour += grit[c] * f(noise * SENSOR)  # + sensor
         np.clip(colour, 0, 255, out=colour)
-        rgb[..., c] = colour.transpose(0, 2, 1)
+        rgb[..., c] = colour.astype(np.uint8).transpose(0, 2, 1)
     return rgb
 
 
-def _table(world, poses, surfaces, gain, size, height_m):
-    """What the pixels of each surface share, (9, S) float32.
+def _of_runs(world, poses, surfaces, exposure, size, height_m):
+    """What the pixels of each run share, (9, R) float32.
 
     rows : inverse depth straight on and its change upwards [1/m]; phase of the texture at the camera, its change per
            metre of depth straight on and upwards; its contrast; colour in full light
     """
-    view, column = np.divmod(surfaces.ray, size)
-    x, y = poses[view, 0], poses[view, 1]
-    s, box, face = slopes(size)[column], surfaces.box, surfaces.face
-    cos, sin = np.cos(poses[:, 2])[view], np.sin(poses[:, 2])[view]
+    N, C = len(world.label) + 2, size  # boxes with the ceiling, an underside, and the floor, a top
+    of_run = np.empty((9, len(surfaces.run_ray)), np.float32)
+    near, near_up, phase, ahead, upward, contrast = of_run[:6]
+    face = surfaces.face.take(surfaces.run_surface)
+    box, view = face // FACES, surfaces.run_ray // C
 
-    # A ceiling is an underside at the height of the walls, a floor a top at none.
-    low, high = np.vstack([world.z, [world.wall_height, world.wall_height], [0, 0]]).T - height_m
-    level = np.where(face == TOP, high[box], low[box])
-    near, near_up = np.where(face < TOP, [surfaces.w, np.zeros(len(box))], [np.zeros(len(box)), 1 / level])
+    near[:] = surfaces.w.take(surfaces.run_surface)
+    levels = np.full((N, FACES), np.inf)  # heights of what lies flat; a side is as near above as straight on
+    levels[:-2, UNDERSIDE], levels[:-2, TOP] = world.z.T - height_m
+    levels[-2, UNDERSIDE], levels[-1, TOP] = world.wall_height - height_m, -height_m
+    levels[levels == 0] = np.inf  # seen edge on, so not at all
+    near_up[:] = (1 / levels).take(face)
 
-    n = np.arange(len(world.label) + 2)
-    turn, pitch = 2.4 * n, 12 + 9 * np.sin(1.7 * n)  # the golden angle: no two neighbours have the same grain
-    gx, gy, gz = ((pitch * g)[box] for g in (np.cos(turn), np.sin(turn), np.sin(3.1 * n)))
-    phase, ahead = gx * x + gy * y + box, gx * (cos - sin * s) + gy * (sin + cos * s)
+    # The texture of a box: waves along a direction of its own, by the golden angle, so no two neighbours are alike.
+    n = np.arange(N)
+    turn, pitch = 2.4 * n, 12 + 9 * np.sin(1.7 * n)
+    wave = pitch * [np.cos(turn), np.sin(turn)]  # along x and y
+    (x, y, theta), which = poses.T, view * N + box
+    cos, sin = np.cos(theta), np.sin(theta)
+    phase[:] = (np.stack([x, y], 1) @ wave + n).take(which)
+    ahead[:] = (np.stack([-sin, cos], 1) @ wave).take(which)
+    ahead *= slopes(C).astype(np.float32).take(surfaces.run_ray - view * C)
+    ahead += (np.stack([cos, sin], 1) @ wave).take(which)
+    upward[:] = (pitch * np.sin(3.1 * n)).take(box)
+    contrast[:] = np.append(GRAIN[world.label], GRAIN[[CEILING, FLOOR]]).take(box)
 
-    contrast = np.append(GRAIN[world.label], GRAIN[[CEILING, FLOOR]])[box]
-    colours = np.vstack([world.colour, world.ceiling_colour, world.floor_colour]).T
-    brightness = _brightness(world)[box, face]
-    albedo = [colour[box] * brightness * gain[:, c][view] for c, colour in enumerate(colours)]
-    return np.array([near, near_up, phase, ahead, gz, contrast, *albedo], np.float32)
+    albedo, facing = np.vstack([world.colour, world.ceiling_colour, world.floor_colour]), _facing(world)
+    for c, colour in enumerate(of_run[6:]):
+        colour[:] = (albedo[:, c, None] * facing).take(face) * exposure[:, c].take(view)
+    return of_run
 
 
-def _brightness(world):
+def _facing(world):
     """Brightness of each face of each box, (N + 2, 6); the last two boxes are the ceiling and the floor."""
     normal = world.angle[:, None] + np.arange(TOP) * (np.pi / 2)
-    of_face = np.full((len(world.label) + 2, 6), 0.95)
+    of_face = np.full((len(world.label) + 2, FACES), 0.95)
     of_face[:-2, :TOP] = 0.8 + 0.15 * np.cos(normal - SUN_RAD)
     of_face[:-2, UNDERSIDE] = 0.6
     return of_face

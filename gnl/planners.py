@@ -35,6 +35,18 @@ def greedy(nnql):
     return plan
 
 
+def go_on(options):
+    """The option of the greatest value, chosen from the first view, then gone on with (Ours+)."""
+    chosen = None
+
+    def plan(step, states, rng):
+        nonlocal chosen
+        if step == 0:
+            chosen = best_actions(options.values(states), rng)
+        return chosen
+    return plan
+
+
 def explore(nnql, epsilon):
     """Greedy, but by chance in a share epsilon (B,) of the cases: how NNQL gathers experience."""
     def plan(_step, states, rng):

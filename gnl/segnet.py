@@ -3,11 +3,14 @@
 The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the view at stride 8 and predicts each of
 its 64 x 64 pixels.
 
-    stem    64 x 64 pixels as 32 x 32 quads of 2 x 2 -> 32 x 32 x 24    linear, ReLU
-    down    32 x 32 x 24 -> 16 x 16 x 32    conv / 2, ReLU
-    block   16 x 16 x 32, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
-    pyramid every pixel hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
-    head    upsampled to 32 x 32 and joined with the stem -> 10 scores for each of the 4 pixels of a quad
+    stem    64 x 64 pixels as 32 x 32 quads of 2 x 2, each 12 colours and a height -> 16    linear, ReLU
+    down    each square of 2 x 2 quads becomes one place: 16 x 16 x 64 -> 16 x 16 x 16    linear, ReLU
+    block   16 x 16 x 16, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
+    pyramid every place hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
+    up      16 x 16 x 16 -> 16 x 16 x 64, the four quads of the square; added to a map of the stem, ReLU
+    head    each quad, 16 -> 10 scores for each of its 4 pixels
+
+A pixel is found by its square, quad and pixel, in this order in memory: so neither down nor up moves anything.
 """
 
 import numpy as np
@@ -30,36 +33,39 @@ from .nn import (
 )
 
 SIZE_PX = 64
-QUAD = 4  # pixels in a quad, 2 x 2
-STEM, WIDTH, BLOCKS, GRIDS = 24, 32, 1, (1, 2, 4)
+QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, read like a page
+WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid parts the cells of the one before
 
 
 def new_params(rng, dtype=np.float32):
     """Random weights (He et al. 2015), zero biases; the last map of a residual block starts at zero."""
     params = {}
 
-    def layer(name, *shape, gain=2.0):
+    def layer(name, *shape, gain=2.0, bias=True):
         params[f"{name}.w"] = (np.sqrt(gain / np.prod(shape[:-1])) * rng.standard_normal(shape)).astype(dtype)
-        params[f"{name}.b"] = np.zeros(shape[-1], dtype)
+        if bias:
+            params[f"{name}.b"] = np.zeros(shape[-1], dtype)
 
-    layer("stem", QUAD * 4, STEM)
-    layer("down", 3, 3, STEM, WIDTH)
+    # Of several maps that are added up one has the bias.
+    layer("stem", QUAD * 3, WIDTH, bias=False)
+    layer("height", 1, WIDTH, gain=0.5)
+    layer("down", QUAD * WIDTH, WIDTH)
     for i in range(BLOCKS):
         layer(f"block{i}.first", 3, 3, WIDTH, WIDTH)
         layer(f"block{i}.second", 3, 3, WIDTH, WIDTH, gain=0.0)
     layer("pyramid", WIDTH, WIDTH)
     for grid in GRIDS:
-        layer(f"pyramid{grid}", WIDTH, WIDTH, gain=0.5)
-    layer("fine", STEM, WIDTH)
-    layer("coarse", WIDTH, WIDTH, gain=1.0)
+        layer(f"pyramid{grid}", WIDTH, WIDTH, gain=0.5, bias=False)
+    layer("fine", WIDTH, WIDTH, bias=False)
+    layer("up", WIDTH, QUAD * WIDTH, gain=1.0)
     layer("head", WIDTH, N_CLASSES * QUAD, gain=1.0)
     return params
 
 
 def forward(params, rgb, learning=True):
-    """Scores of each pixel, classes first and pixels by quads (see `to_quads`); cache: those of the layers by name.
+    """Scores of each pixel, classes first and pixels as in `to_quads`; cache: those of the layers by name.
 
-    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 32, 32); not `learning`: no cache, which costs room near the processor
+    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 16, 16, 4); not `learning`: no cache, which costs room near the processor
     """
     cache = {}
 
@@ -69,78 +75,91 @@ def forward(params, rgb, learning=True):
             cache[name] = of_layer
         return out
 
-    def conv(name, x, stride=1):
-        return keep(name, conv_forward(x, params[f"{name}.w"], params[f"{name}.b"], stride))
+    def conv(name, x):
+        return keep(name, conv_forward(x, params[f"{name}.w"], params[f"{name}.b"]))
 
     def linear(name, x):
-        return keep(name, linear_forward(x, params[f"{name}.w"], params[f"{name}.b"]))
+        return keep(name, linear_forward(x, params[f"{name}.w"], params.get(f"{name}.b")))
 
     def relu(name, x):
         return keep(f"{name}.relu", relu_forward(x, out=x))  # in place: no layer needs its own sums again
 
-    fine = relu("stem", linear("stem", standardise(rgb, params["stem.w"].dtype)))
-    x = relu("down", conv("down", fine, 2))
+    colours = standardise(rgb, params["stem.w"].dtype)
+    fine = linear("stem", colours)
+    fine += linear("height", heights(len(fine[0]), fine.dtype))
+    fine = relu("stem", fine)  # (B, 16, 16, 4, 16)
+
+    x = relu("down", linear("down", fine.reshape(*fine.shape[:3], -1)))  # (B, 16, 16, 16)
     for i in range(BLOCKS):
         inner = relu(f"block{i}.first", conv(f"block{i}.first", x))
         added = conv(f"block{i}.second", inner)
         added += x
         x = relu(f"block{i}.second", added)
-    y = linear("pyramid", x)
-    for grid in GRIDS:
-        pooled = keep(f"pool{grid}", pool_forward(x, grid))
-        y += upsample_forward(linear(f"pyramid{grid}", pooled), x.shape[1] // grid)[0]
-    y = relu("pyramid", y)
+
+    cells, heard = x, linear("pyramid", x)
+    for grid in reversed(GRIDS):  # the mean of a large cell is that of the small cells in it
+        cells = keep(f"pool{grid}", pool_forward(cells, grid))
+        heard += upsample_forward(linear(f"pyramid{grid}", cells), x.shape[1] // grid)[0]
+    heard = relu("pyramid", heard)
+
     joined = linear("fine", fine)
-    joined += upsample_forward(linear("coarse", y), 2)[0]
+    joined += linear("up", heard).reshape(joined.shape)
     joined = relu("head", joined)
     # Classes first: the loss and the best class then run along memory.
-    scores = params["head.w"].T @ joined.reshape(-1, WIDTH).T
+    scores = np.ascontiguousarray(params["head.w"].T) @ joined.reshape(-1, WIDTH).T
     scores += params["head.b"][:, None]
     cache["head"] = joined, params["head.w"]
-    return scores.reshape(N_CLASSES, QUAD, *joined.shape[:3]), cache
+    return scores.reshape(N_CLASSES, QUAD, *joined.shape[:-1]), cache
 
 
 def standardise(rgb, dtype=np.float32):
-    """Colours less the view's mean over its spread, and how high each row is: (B, H, H, 3) uint8 -> quads of these.
-
-    returns : (B, H / 2, H / 2, 16), the 4 channels of the 2 x 2 pixels of each quad
-    """
+    """Colours less the view's mean over its spread, quad by quad: (B, H, H, 3) uint8 -> (B, H / 4, H / 4, 4, 12)."""
     B, H, W, _ = rgb.shape
-    flat = rgb.reshape(B, -1).astype(dtype)
-    flat -= flat.mean(1, keepdims=True)
+    quads = rgb.reshape(B, H // 4, 2, 2, W // 4, 2, 6).transpose(0, 1, 4, 2, 5, 3, 6)
+    flat = quads.astype(dtype, order="C").reshape(B, -1)
+    flat -= np.einsum("bi->b", flat)[:, None] / flat.shape[1]  # many times faster than `mean`
     spread = np.sqrt(np.einsum("bi,bi->b", flat, flat) / flat.shape[1])
-    flat /= spread[:, None] + 1  # a view of one colour stays at zero
-    pixels = np.empty((B, H, W, 4), dtype)
-    for c in range(3):  # one by one: NumPy is slow along an axis of three
-        pixels[..., c] = flat.reshape(rgb.shape)[..., c]
-    pixels[..., 3] = np.linspace(1, -1, H, dtype=dtype)[:, None]  # the camera never tilts: floor is low
-    quads = pixels.reshape(B, H // 2, 2, W // 2, 8).transpose(0, 1, 3, 2, 4)
-    return quads.reshape(B, H // 2, W // 2, 16)
+    flat *= 1 / (spread[:, None] + 1)  # a view of one colour stays at zero
+    return flat.reshape(B, H // 4, W // 4, 4, 12)
+
+
+def heights(n, dtype=np.float32):
+    """Heights of the quads in n rows of squares, from 1 down to -1, (n, 1, 4, 1). No tilt, so the floor is low."""
+    rows = 1 - np.arange(2 * n, dtype=dtype) / (n - 0.5)
+    return rows.reshape(n, 1, 2, 1).repeat(2, 2)
 
 
 def backward(params, dscores, cache):
-    """Gradients of all parameters from dscores (10, 4, B, 32, 32), as a dict with the names of `params`."""
+    """Gradients of all parameters from dscores (10, 4, B, 16, 16, 4), as a dict with the names of `params`."""
     grads = {}
 
     def back(step, name, dout):
-        dx, grads[f"{name}.w"], grads[f"{name}.b"] = step(dout, cache[name])
+        dx, grads[f"{name}.w"], db = step(dout, cache[name])
+        if f"{name}.b" in params:
+            grads[f"{name}.b"] = db
         return dx
 
     dhead = np.moveaxis(dscores.reshape(-1, *dscores.shape[2:]), 0, -1)
     djoined = relu_backward(back(linear_backward, "head", dhead), cache["head.relu"])
     dfine = back(linear_backward, "fine", djoined)
-    dy = back(linear_backward, "coarse", upsample_backward(djoined, (2,)))
-    dy = relu_backward(dy, cache["pyramid.relu"])
-    dx = back(linear_backward, "pyramid", dy)
+
+    dup = djoined.reshape(*djoined.shape[:3], -1)
+    dheard = relu_backward(back(linear_backward, "up", dup), cache["pyramid.relu"])
+    dx, dcells = back(linear_backward, "pyramid", dheard), 0
     for grid in GRIDS:
-        dpooled = back(linear_backward, f"pyramid{grid}", upsample_backward(dy, (dy.shape[1] // grid,)))
-        dx = dx + pool_backward(dpooled, cache[f"pool{grid}"])
+        dout = upsample_backward(dheard, (dheard.shape[1] // grid,))
+        dcells = pool_backward(dcells + back(linear_backward, f"pyramid{grid}", dout), cache[f"pool{grid}"])
+    dx += dcells
+
     for i in reversed(range(BLOCKS)):
         dsum = relu_backward(dx, cache[f"block{i}.second.relu"])
         dinner = back(conv_backward, f"block{i}.second", dsum)
         dx = dsum + back(conv_backward, f"block{i}.first", relu_backward(dinner, cache[f"block{i}.first.relu"]))
-    dfine = dfine + back(conv_backward, "down", relu_backward(dx, cache["down.relu"]))
-    back(linear_backward, "stem", relu_backward(dfine, cache["stem.relu"]))
+
+    dfine += back(linear_backward, "down", relu_backward(dx, cache["down.relu"])).reshape(dfine.shape)
+    dstem = relu_backward(dfine, cache["stem.relu"])
+    back(linear_backward, "stem", dstem)
+    back(linear_backward, "height", dstem.sum((0, 2))[:, None])
     return grads
 
 
@@ -156,7 +175,7 @@ def predict(params, rgb, chunk=8):
     return labels
 
 
-def train(params, rgb, labels, rng, epochs, batch=8, rate=4e-3, progress=None):
+def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     """Fit `params` in place to views and their labels; each view is seen mirrored half the time.
 
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
@@ -188,14 +207,15 @@ def accuracy(predicted, true):
 
 
 def to_quads(images):
-    """Pixels by quads: (B, H, W, ...) -> (4, B, H / 2, W / 2, ...), upper left and right, lower left and right."""
-    return np.stack([images[:, i::2, j::2] for i in (0, 1) for j in (0, 1)])
+    """(B, H, W) -> (4, B, H / 4, W / 4, 4): pixel in its quad, view, square, quad in its square; four as on a page."""
+    B, H, W = images.shape
+    return images.reshape(B, H // 4, 2, 2, W // 4, 2, 2).transpose(3, 6, 0, 1, 4, 2, 5).reshape(4, B, H // 4, W // 4, 4)
 
 
 def from_quads(quads):
-    """The way back: (4, B, h, w) -> (B, 2 h, 2 w)."""
-    _, B, h, w = quads.shape
-    return quads.reshape(2, 2, B, h, w).transpose(2, 3, 0, 4, 1).reshape(B, 2 * h, 2 * w)
+    """The way back: (4, B, h, w, 4) -> (B, 4 h, 4 w)."""
+    _, B, h, w, _ = quads.shape
+    return quads.reshape(2, 2, B, h, w, 2, 2).transpose(2, 3, 5, 0, 4, 6, 1).reshape(B, 4 * h, 4 * w)
 
 
 def save(params, path, made_by):

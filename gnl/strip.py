@@ -1,15 +1,17 @@
 """The semantic strip: which boxes the rays of a view cross, near to far.
 
 One ray leaves the camera for each image column. In inverse depth everything is linear: with the camera at the
-origin, x ahead and y to the left, the ray of slope s is p = (1, s) / w, and a side n . p = m of a box meets it at
+origin, x ahead and y to the left, the ray of slope s is p = (1, s) / w, and it meets the line n . p = m at
 
-    w = (n_x + n_y s) / m.
+    w = (n_x + n_y s) / m = a + b s.
 
-A convex box is entered at the least w over the sides that face the camera (m < 0) and left at the greatest w over
-those that do not; it is hit where w_in > w_out. (Cyrus and Beck 1978, in inverse depth.)
+The footprint of a box is where two slabs near_k < n_k . p < far_k meet; n_k is an axis of the box, turned away from
+the camera. Where the camera is outside slab k (near_k > 0) it sees a face of the box: a ray enters by one of the at
+most two near lines that are faces, in columns that corners of the box bound, and leaves by the line of greatest w
+among all others. (Slabs: Kay and Kajiya 1986; here in inverse depth.)
 
-    B views   C columns   N boxes   P crossings
-    s (C,)            slope of each column's ray, +1 at the left rim of a 90 degree view
+    B views   C columns   N boxes   V boxes in view, of all views   P crossings   k = 0, 1 axis of a box
+    s                 slope of a column's ray, +1 at the left rim of a 90 degree view
     w_in, w_out [1/m] inverse depth at entry and exit; depth is measured along the optical axis
 """
 
@@ -18,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 FIELD_OF_VIEW_RAD = np.pi / 2  # CHOICE: Habitat's default
-TOP, UNDERSIDE = 4, 5  # faces of a box; 0..3 are its sides, counter-clockwise from the end of its first axis
+TOP, UNDERSIDE, FACES = 4, 5, 6  # faces of a box; 0..3 are its sides, counter-clockwise from the end of its first axis
 NEAREST_M = 0.05  # nearer things are cut off: the camera sits inside the robot
 IN_FRONT_M = 1e-9
 
@@ -31,14 +33,20 @@ class Strip:
     n_columns: int
     ray: np.ndarray  # (P,) int
     w_in: np.ndarray  # (P,) [1/m]
-    w_out: np.ndarray  # (P,) [1/m]
     box: np.ndarray  # (P,) int
     side: np.ndarray  # (P,) 0..3, the one by which the ray enters
+    seen: np.ndarray  # (P,) int, which of the boxes in view it is
+    exits: np.ndarray  # (4, 2, V) lines (a, b) by one of which a ray leaves the box
+
+    def w_out(self, chosen=slice(None)):
+        """Inverse depth where the rays of chosen crossings leave their boxes; few users need all of it."""
+        s = slopes(self.n_columns)[self.ray[chosen] % self.n_columns]
+        return _greatest(self.exits, self.seen[chosen], s)
 
     def dense(self):
         """Near to far as arrays (B, C, D): distance in, distance out [m, along the ray], box; inf and -1 where none."""
         order = np.lexsort((-self.w_in, self.ray))
-        ray, box, w_in, w_out = (a[order] for a in (self.ray, self.box, self.w_in, self.w_out))
+        ray, box, w_in, w_out = (a[order] for a in (self.ray, self.box, self.w_in, self.w_out()))
         d = np.arange(len(ray)) - np.searchsorted(ray, ray)  # how many the ray has crossed before
         shape = self.n_views * self.n_columns, int(d.max(initial=0)) + 1
         near, far, boxes = np.full(shape, np.inf), np.full(shape, np.inf), np.full(shape, -1)
@@ -56,79 +64,89 @@ def slopes(n_columns):
 
 def cast(world, poses, n_columns=512):
     """Semantic strip of each pose: poses (B, 3) -> Strip. Nothing behind the nearest full-height wall is kept."""
-    B, C, N = len(poses), n_columns, len(world.label)
-    ahead, left, normal_x, normal_y, offset = _sides(world, poses)  # (4, B * N) each
+    B, C = len(poses), n_columns
+    view, box, *axes, near, far, away = _boxes_in_view(world, poses)
+    V, outside = len(box), near > 0
+    begin, end = _columns_of_faces(*axes, near, far, C)
+    near_lines, far_lines = np.stack(axes) / near, np.stack(axes) / far  # (a, b) of both axes, (2, 2, V)
+    exits = np.concatenate([far_lines, near_lines * ~outside], 1).transpose(1, 0, 2)
+    inside = ~outside.any(0)  # a box around the camera shows no face: its first stands in, where all is cut off
+    near_lines[:, 0, inside] = [[1 / NEAREST_M], [0]]
 
-    # Columns that a box can cover, of those with a corner in front of the camera.
-    seen = np.flatnonzero(ahead.max(0) > IN_FRONT_M)  # view * N + box
-    rims = (1 - np.stack(_slopes_of(ahead[:, seen], left[:, seen])) / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5
-    begin, end = np.ceil(rims[0]).clip(0, C).astype(int), (np.floor(rims[1]) + 1).clip(0, C).astype(int)
-    within = np.flatnonzero(end > begin)
-    seen, begin, count = seen[within], begin[within], (end - begin)[within]
-    view, box = np.divmod(seen, N)
+    # Faces, each as k * V + box, that fill a column at least; those of full-height walls first.
+    face = np.flatnonzero(end > begin)
+    closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height))[box[face % V]]
+    face = np.concatenate([face[closes], face[~closes]])
+    a, b = near_lines.reshape(2, -1)[:, face]
+    seen, begin, count = face % V, begin.ravel()[face], (end - begin).ravel()[face]
 
-    # Each side is a line w = a + b s. Spread the lines over the columns of their box and clip with them.
-    m = offset[:, seen]
-    m[abs(m) < 1e-12] = 1e-12  # in the plane of a side one does not see it
-    a, b = normal_x[:, seen] / m, normal_y[:, seen] / m
-    column = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count - begin, count)
-    s = slopes(C)[column]
+    # Each face becomes one crossing for each of its columns: all that is the face's is repeated, and the rays, which
+    # for the face begin at view * C + begin, count on from crossing to crossing.
+    owner = np.repeat(np.arange(len(face)), count)
+    first_crossing = np.cumsum(count) - count
+    ray = np.arange(len(owner)) + np.repeat(view[seen] * C + begin - first_crossing, count)
+    s = np.tile(slopes(C), B)[ray]
+    w_in = np.minimum(np.repeat(a, count) + np.repeat(b, count) * s, 1 / NEAREST_M)
+    near_by = np.flatnonzero(w_in == 1 / NEAREST_M)
+    gone = _greatest(exits, seen[owner[near_by]], s[near_by]) >= 1 / NEAREST_M  # cut off from front to back
+    w_in[near_by[gone]] = -1
 
-    def spread(a, b):
-        return np.repeat(a, count) + np.repeat(b, count) * s
-
-    facing = m < 0  # of two opposite sides, k and k + 2, at most one
-    side = [np.where(facing[k], k, k + 2) for k in (0, 1)]
-    w_in = []
-    for k in side:
-        either = np.choose(k, facing)
-        w_in.append(spread(np.where(either, np.choose(k, a), np.inf), np.where(either, np.choose(k, b), 0)))
-    second = w_in[1] < w_in[0]
-    w_in = np.minimum(np.minimum(*w_in), 1 / NEAREST_M)
-    w_out = np.zeros(len(s))
-    for k in range(4):
-        np.maximum(w_out, spread(np.where(facing[k], 0, a[k]), np.where(facing[k], 0, b[k])), out=w_out)
-
-    ray, hit = np.repeat(view * C, count) + column, w_in > w_out
-    closes = (world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height)
-    wall = np.flatnonzero(np.repeat(closes[box], count) & hit)
+    n_wall = count[:np.count_nonzero(closes)].sum()
     horizon = np.zeros(B * C)  # the nearest full-height wall on each ray
-    np.maximum.at(horizon, ray[wall], w_in[wall])
-    kept = np.flatnonzero(hit & (w_in >= horizon[ray]))
-    owner = np.repeat(np.arange(len(seen)), count)[kept]
-    side = np.where(second[kept], side[1][owner], side[0][owner])
-    return Strip(B, C, ray[kept], w_in[kept], w_out[kept], box[owner], side)
+    np.maximum.at(horizon, ray[:n_wall], w_in[:n_wall])
+    kept = np.flatnonzero(w_in >= horizon[ray])
+    owner = owner[kept]
+    side = (np.array([[0], [1]]) + 2 * away).ravel()[face]  # axes turned away from the camera: their sides look at it
+    return Strip(B, C, ray[kept], w_in[kept], box[seen][owner], side[owner], seen[owner], exits)
 
 
-def _slopes_of(ahead, left):
-    """Greatest and least slope of boxes, (n,) each, from their corners (4, n), of which one at least is in front."""
-    front = ahead > IN_FRONT_M
-    # Where a side goes from before the camera to behind it, the box reaches out of the view to left or right.
-    next_ahead, next_left = np.roll(ahead, -1, 0), np.roll(left, -1, 0)
-    leaves = front != np.roll(front, -1, 0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        corner = np.where(front, left / ahead, np.nan)
-        crossing = (left * next_ahead - next_left * ahead) / (next_ahead - ahead)
-        rim = np.where(leaves, np.copysign(np.inf, crossing), np.nan)
-    s = np.concatenate([corner, rim])
-    return np.fmax.reduce(s, 0), np.fmin.reduce(s, 0)  # these pass over nan
+def _boxes_in_view(world, poses):
+    """Boxes of which some part may be in view, and their slabs as the camera sees them.
 
-
-def _sides(world, poses):
-    """Corners and sides of all boxes as each camera sees them, as arrays (4, B * N).
-
-    returns : corners (ahead, left) [m]; outward normals (n_x, n_y) and offsets m [m] of the sides n . p = m
+    returns : view, box (V,);  (2, V) each: how far n_k points ahead and to the left; near_k, far_k [m]; whether n_k
+              is the box's own axis and not its opposite
     """
     x, y, theta = (np.asarray(poses, float)[:, i, None] for i in range(3))
-    cos, sin = np.cos(theta), np.sin(theta)
     dx, dy = world.centre[:, 0] - x, world.centre[:, 1] - y
-    cx, cy = (cos * dx + sin * dy).ravel(), (cos * dy - sin * dx).ravel()
-    turn = (world.angle - theta).ravel()
-    ex, ey = np.cos(turn), np.sin(turn)  # the box's first axis; its second is (-ey, ex)
-    h1, h2 = (np.tile(h, len(poses)) for h in world.half.T)
-    ux, uy, vx, vy = h1 * ex, h1 * ey, -h2 * ey, h2 * ex
-    along, across = cx * ex + cy * ey, cy * ex - cx * ey
-    return (np.stack([cx + ux + vx, cx - ux + vx, cx - ux - vx, cx + ux - vx]),
-            np.stack([cy + uy + vy, cy - uy + vy, cy - uy - vy, cy + uy - vy]),
-            np.stack([ex, -ey, -ex, ey]), np.stack([ey, ex, -ey, -ex]),
-            np.stack([h1 + along, h2 + across, h1 - along, h2 - across]))
+    cos, sin, half = np.cos(theta), np.sin(theta), FIELD_OF_VIEW_RAD / 2
+    ahead, left = cos * dx + sin * dy, cos * dy - sin * dx
+    # A circle around the box reaches into the view.
+    view, box = np.nonzero(abs(left) * np.cos(half) - ahead * np.sin(half) < np.hypot(*world.half.T))
+    ahead, left, turn = ahead[view, box], left[view, box], world.angle[box] - theta[view, 0]
+    cos, sin = np.cos(turn), np.sin(turn)
+    middle = np.stack([cos * ahead + sin * left, cos * left - sin * ahead])
+    sign, half = np.copysign(1, middle), world.half.T[:, box]
+    near, far = abs(middle) - half, abs(middle) + half
+    near[abs(near) < 1e-12] = -1e-12  # in the plane of a side one does not see it
+    return view, box, sign * [cos, -sin], sign * [sin, cos], near, far, sign > 0
+
+
+def _columns_of_faces(ahead, left, near, far, n_columns):
+    """First and end column of the faces k of each box, (2, V) each, of slabs as _boxes_in_view gives them.
+
+    From face 0 to face 1 one passes three corners: where the outline begins, where the faces meet, where it ends.
+    With one face alone two of the three are the same corner.
+    """
+    C, outside = n_columns, near > 0
+    along_0 = np.stack([near[0], near[0], np.where(outside[1], far[0], near[0])])
+    along_1 = np.stack([np.where(outside[0], far[1], near[1]), near[1], near[1]])
+    x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        column = np.ceil((1 - y / x / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5)
+    # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
+    front = x > IN_FRONT_M
+    first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
+    behind = np.stack([first, np.where(front[0], C - first, first), C - first])
+    column = np.where(front, column, behind).clip(0, C).astype(int)
+    inside = ~outside.any(0)
+    column[:, inside] = [[0], [C], [C]]
+    shown = front[0] | front[2] | inside
+    return np.minimum(column[:-1], column[1:]), np.maximum(column[:-1], column[1:]) * shown
+
+
+def _greatest(lines, seen, s):
+    """Greatest a + b s, and 0 at least, of the lines (n, 2, V) of some boxes at slopes s."""
+    w = np.zeros(len(s))
+    for a, b in lines:
+        np.maximum(w, a[seen] + b[seen] * s, out=w)
+    return w

@@ -13,7 +13,7 @@ from . import learned
 from .episode import Senses
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from .files import load_arrays, write_whole
-from .gcn import BATCH, EPOCHS
+from .gcn import BATCH, EPOCHS, RATE
 from .photo import check_noise
 from .terminal import Stage, processes
 from .world import World
@@ -36,9 +36,11 @@ class Settings:
     gcn_views: int = 10_000
     gcn_epochs: int = EPOCHS
     gcn_batch: int = BATCH
+    gcn_rate: float = RATE
 
 
-QUICK = Settings(episodes=320, tests=40, net_views=1200, net_epochs=3, gcn_views=3000, gcn_epochs=25, gcn_batch=64)
+QUICK = Settings(episodes=320, tests=40, net_views=1200, net_epochs=3, gcn_views=3000, gcn_epochs=25,
+                 gcn_batch=64, gcn_rate=0.004)
 QUICK_GAPS = "0.2/10", "1.0/90"
 
 
@@ -62,28 +64,29 @@ def run(args):
     settings, cells = check(args)
     out = Path(args.out)
     agree(out / "settings.json", asdict(settings))
-    todo = [cell for cell in cells if not finished(out, cell)]
+    todo = [cell for cell in cells if not finished(out, cell.name)]
     if todo:
         with executor(args.jobs, args.dask) as pool:
             senses = prepare(out, settings, todo, args.jobs, pool)
             stage = Stage("table")
-            run_cells(out, todo, senses, settings, pool, stage)
+            run_jobs(out, {cell.name: (run_cell, cell, senses[cell.world], load_starts(out, cell)) for cell in todo},
+                     settings.episodes, pool, stage)
             stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
 
 
-def run_cells(out, cells, senses, settings, pool, stage):
-    """Hand the cells to the processes and write what comes back."""
-    waiting = {pool.submit(run_cell, cell, senses[cell.world], load_starts(out, cell)): cell for cell in cells}
+def run_jobs(out, jobs, n_episodes, pool, stage):
+    """Hand jobs {name: (function, *arguments)} to the processes, and write each's outcomes and costs as they come."""
+    waiting = {pool.submit(*job): name for name, job in jobs.items()}
     while waiting:
         ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
         for future in ready:
-            cell, (result, costs) = waiting.pop(future), future.result()
-            write_whole(out / "costs" / f"{cell.name}.json", to_bytes(costs))
-            write_whole(path_of(out, cell), to_bytes(result))
-        done = len(cells) - len(waiting)
-        rate = done * settings.episodes / stage.seconds
-        stage(done / len(cells), f"{done} of {len(cells)} cells, {rate:.0f} episodes/s")
+            name, (result, costs) = waiting.pop(future), future.result()
+            write_whole(out / "costs" / f"{name}.json", to_bytes(costs))
+            write_whole(path_of(out, name), to_bytes(result))
+        done = len(jobs) - len(waiting)
+        rate = done * n_episodes / stage.seconds
+        stage(done / len(jobs), f"{done} of {len(jobs)} cells, {rate:.0f} episodes/s")
 
 
 def prepare(out, settings, cells, jobs, pool):
@@ -109,8 +112,8 @@ def prepare(out, settings, cells, jobs, pool):
     stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
     senses = {world: Senses(World.load(data / f"home-{world}.json"), net, None, settings.noise) for world in worlds}
-    how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch}
-    made_by = {"net": learned.digest([views_made_by, settings.net_epochs]), "noise": settings.noise}
+    how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
+    made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
     classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
     for world, classifier in classifiers.items():
         senses[world].gcn = classifier
@@ -160,11 +163,11 @@ def agree(path, settings):
     write_whole(path, to_bytes(settings))
 
 
-def finished(out, cell):
-    """Whether a cell's file is there and whole; a damaged one is named and set aside."""
-    path = path_of(out, cell)
+def finished(out, name):
+    """Whether the file of a cell's outcomes is there and whole; a damaged one is named and set aside."""
+    path = path_of(out, name)
     try:
-        return path.exists() and json.loads(path.read_bytes())["cell"] == asdict(cell)
+        return path.exists() and json.loads(path.read_bytes())["name"] == name
     except (ValueError, KeyError, TypeError):
         aside = path.with_suffix(".damaged")
         os.replace(path, aside)
@@ -173,9 +176,9 @@ def finished(out, cell):
         return False
 
 
-def path_of(out, cell):
+def path_of(out, name):
     """The file of a cell's outcomes."""
-    return Path(out) / "cells" / f"{cell.name}.json"
+    return Path(out) / "cells" / f"{name}.json"
 
 
 def load_starts(out, cell):

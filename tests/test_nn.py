@@ -24,7 +24,6 @@ def conv_data(seed=0):
 
 LAYERS = {  # name: inputs, forward, backward; all sizes differ, so that a transpose fails
     "conv": (conv_data(), nn.conv_forward, nn.conv_backward),
-    "conv, stride 2": (conv_data(), lambda x, w, b: nn.conv_forward(x, w, b, 2), nn.conv_backward),
     "linear": (linear_data(), nn.linear_forward, nn.linear_backward),
     "relu": ((normal(0, 3, 5, 4),), nn.relu_forward, nn.relu_backward),
     "pool": ((normal(0, 2, 6, 12, 5),), lambda x: nn.pool_forward(x, 3), nn.pool_backward),
@@ -55,14 +54,6 @@ def test_every_gradient_is_that_of_central_differences(layer):
         assert error < CLOSE
 
 
-@pytest.mark.parametrize("stride", [1, 2])
-def test_gradients_of_the_weights_alone_are_those_of_the_whole_convolution(stride):
-    out, cache = nn.conv_forward(*conv_data(), stride)
-    dout = normal(9, *out.shape)
-    for alone, whole in zip(nn.conv_backward_weights(dout, cache), nn.conv_backward(dout, cache)[1:], strict=True):
-        np.testing.assert_array_equal(alone, whole)
-
-
 def test_backward_writes_neither_into_the_cache_nor_into_what_it_is_given(layer):
     inputs, forward, backward = layer
     out, cache = forward(*inputs)
@@ -82,19 +73,17 @@ def test_layers_keep_float32(layer):
     assert {array.dtype for array in (out, *gradients)} == {np.dtype(np.float32)}
 
 
-@pytest.mark.parametrize("stride", [1, 2])
-def test_convolution_is_that_of_the_plain_loops(stride):
+def test_convolution_is_that_of_the_plain_loops():
     x, w, b = conv_data()
-    np.testing.assert_allclose(nn.conv_forward(x, w, b, stride)[0], naive_learning.conv(x, w, b, stride))
+    np.testing.assert_allclose(nn.conv_forward(x, w, b)[0], naive_learning.conv(x, w, b))
 
 
-@pytest.mark.parametrize("stride", [1, 2])
-def test_convolution_is_that_of_scipy(stride):
+def test_convolution_is_that_of_scipy():
     x, w, b = conv_data()
-    out, _ = nn.conv_forward(x, w, b, stride)
+    out, _ = nn.conv_forward(x, w, b)
     for image, f in np.ndindex(len(x), len(b)):
         sums = sum(correlate(x[image, :, :, c], w[:, :, c, f], mode="same") for c in range(x.shape[3]))
-        np.testing.assert_allclose(out[image, :, :, f], sums[::stride, ::stride] + b[f])
+        np.testing.assert_allclose(out[image, :, :, f], sums + b[f])
 
 
 def test_linear_is_one_map_at_every_pixel():
@@ -102,6 +91,7 @@ def test_linear_is_one_map_at_every_pixel():
     out, _ = nn.linear_forward(x, w, b)
     for pixel in np.ndindex(x.shape[:-1]):
         np.testing.assert_allclose(out[pixel], x[pixel] @ w + b)
+    np.testing.assert_array_equal(nn.linear_forward(x, w)[0], nn.linear_forward(x, w, 0 * b)[0])
 
 
 def test_pooling_takes_the_mean_of_each_cell_and_upsampling_repeats_it():

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from conftest import room, thing
 
-from gnl.camera import render
-from gnl.classes import BED, FLOOR, WALL
+from gnl.camera import HEIGHT_M, render
+from gnl.classes import BED, FLOOR, OTHER, SOFA, WALL
+from gnl.photo import SUN_RAD
 from gnl.world import World
 
 POSES = np.array([[2.0, 1.2, 0.4], [5.0, 1.5, 2.5]])
@@ -80,6 +81,30 @@ def test_the_farther_is_the_darker():
     floor = rgb[0, labels[0, :, 32] == FLOOR, 32].mean(-1)
     assert (np.diff(floor) >= 0).all()  # downwards is nearer
     assert floor[-1] > floor[0]
+
+
+def test_a_clean_pixel_is_albedo_times_facing_times_distance():
+    """A wall 5 m ahead that looks to the west, and the floor of the lowest row."""
+    world = World(room(size=(20.0, 20.0), colors={"wall": [255, 100, 50], "floor": [10, 200, 90]}))
+    pose = np.array([[20 - 0.05 - 5.0, 10.0, 0.0]])  # the wall is 0.1 m thick
+    rgb, labels = render(world, pose, np.random.default_rng(0), 64, noise=0)
+    assert labels[0, 32, 32] == WALL
+    assert labels[0, 63, 32] == FLOOR
+    facing = 0.8 + 0.15 * np.cos(np.pi - SUN_RAD)
+    expected = np.array([255, 100, 50]) * facing * (0.6 + 0.4 * np.exp(-1))
+    np.testing.assert_allclose(rgb[0, 32, 32], expected, atol=1)
+    depth = HEIGHT_M / (63 / 64)
+    expected = np.array([10, 200, 90]) * 0.95 * (0.6 + 0.4 * np.exp(-depth / 5))
+    np.testing.assert_allclose(rgb[0, 63, 32], expected, atol=1)
+
+
+def test_what_lies_at_the_height_of_the_camera_is_seen_edge_on():
+    things = thing("sofa", 3, 1, 1, 1, HEIGHT_M), thing("other", 3, 3, 1, 1, 0.5, z0=HEIGHT_M)
+    rgb, labels = render(World(room(*things)), np.array([[1.0, 2.0, 0.0]]), np.random.default_rng(0), 64, noise=0)
+    assert (labels[0, :32] != SOFA).all()
+    assert (labels[0, 32:] != OTHER).all()
+    assert {SOFA, OTHER} < set(labels.ravel().tolist())
+    assert rgb.min() > 0
 
 
 def test_two_sides_of_a_thing_differ():

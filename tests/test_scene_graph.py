@@ -44,6 +44,13 @@ def spiral(n):
     return labels
 
 
+def comb(n):
+    """Teeth of one class on another that hang together in one column alone, the last; the gaps do in the first."""
+    labels = np.indices((n, n))[0] % 2
+    labels[:, 0], labels[:, -1] = 0, 1
+    return labels
+
+
 IMAGES = {
     "noise": np.random.default_rng(0).integers(10, size=(64, 64)),
     "two classes": np.random.default_rng(1).integers(2, size=(512, 512)),
@@ -57,6 +64,9 @@ IMAGES = {
     "columns": np.arange(64)[None] // 3 % 10 + np.zeros((64, 1), int),
     "checkerboard": np.indices((64, 64)).sum(0) % 2,
     "spiral": spiral(64),
+    "comb": comb(64),
+    "comb the other way": comb(64)[:, ::-1],
+    "comb with two backs": np.hstack([comb(33), 1 - comb(33)[::-1]]),
     "one class": np.full((64, 64), 7),
 }
 

@@ -6,7 +6,7 @@ import pymunk
 import pytest
 from conftest import room, strewn_plan, thing
 
-from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, WALL
+from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, TV, WALL
 from gnl.free_space import box_distance
 from gnl.strip import NEAREST_M, cast, slopes
 from gnl.world import World
@@ -189,6 +189,39 @@ def test_a_camera_under_a_lamp_crosses_it_from_where_it_is():
     np.testing.assert_allclose(near[0, :, 0], NEAREST_M * ahead)
     np.testing.assert_allclose(far[0, 4, 0], 0.3)
     np.testing.assert_allclose(far[0, 0, 0], 0.2 / slopes(9)[0] * ahead[0])  # it leaves by the side
+
+
+def test_what_ends_nearer_than_the_nearest_distance_is_cut_off():
+    """Two boards right before the camera, one through which the cut goes and one in front of it."""
+    boards = thing("tv", 1.05, 2, 0.04, 2, 2), thing("sofa", 1.02, 2, 0.02, 2, 2)
+    world = World(room(*boards))
+    near, far, box = cast(world, np.array([[1.0, 2.0, 0.0]]), 9).dense()
+    ahead = np.hypot(1, slopes(9))
+    assert world.label[box[0, :, 0]].tolist() == [TV] * 9
+    np.testing.assert_allclose(near[0, :, 0], NEAREST_M * ahead)
+    np.testing.assert_allclose(far[0, :, 0], 0.07 * ahead)
+    assert_strip_is_the_naive_one(world, np.array([[1.0, 2.0, 0.0], [1.0, 2.0, 0.6], [1.02, 2.1, -2.0]]))
+
+
+def test_rays_leave_some_boxes_where_they_leave_them_among_all(strewn):
+    strip = cast(strewn, np.array([[2.0, 1.02, 0.3], [5.0, 2.97, -2.8]]), 64)
+    some = np.random.default_rng(0).permutation(len(strip.ray))[:99]
+    np.testing.assert_array_equal(strip.w_out(some), strip.w_out()[some])
+    assert (strip.w_out() < strip.w_in).all()
+
+
+def test_rays_enter_by_the_side_that_faces_them():
+    """Around a box, turned: side k looks to its own angle and k quarter turns."""
+    world = World(room(thing("bed", 5, 5, 1, 1, 0.5, angle=0.3), size=(10.0, 10.0)))
+    for k in range(4):
+        bearing = 0.3 + k * np.pi / 2
+        for off, sides in ((0.0, {k}), (0.7, {k, (k + 1) % 4})):  # in front of it, before the corner with the next
+            x, y = 5 + 2 * np.cos(bearing + off), 5 + 2 * np.sin(bearing + off)
+            strip = cast(world, np.array([[x, y, bearing + off + np.pi]]), 64)
+            bed = strip.box == 4
+            assert set(strip.side[bed].tolist()) == sides
+            if off:  # the next one lies farther counter-clockwise, which one sees from outside on the right
+                assert strip.ray[bed & (strip.side == k)].max() < strip.ray[bed & (strip.side == (k + 1) % 4)].min()
 
 
 def test_a_view_of_nothing_crosses_nothing():

@@ -19,39 +19,44 @@ class TorchNet:
 
     def __init__(self, params):
         self.p = {name: torch.tensor(p) for name, p in params.items()}
-        stem = self.p["stem.w"].reshape(segnet.QUAD, 4, -1)  # pixel_unshuffle puts the quad's pixels innermost
-        self.p["stem.w"] = stem.permute(1, 0, 2).reshape(4 * segnet.QUAD, -1)
-        for name, p in self.p.items():  # (C, F) and (3, 3, C, F) as torch has them: (F, C, h, w)
+        w = segnet.WIDTH
+        # Torch has the pixels of a quad and the quads of a square innermost, or as a kernel of 2 x 2.
+        self.p["stem.w"] = self.p["stem.w"].reshape(segnet.QUAD, 3, w).transpose(0, 1).reshape(-1, w)
+        self.p["down.w"] = self.p["down.w"].reshape(2, 2, w, w)
+        for name in ("up.w", "up.b"):
+            p = self.p[name]
+            self.p[name] = p.unflatten(-1, (segnet.QUAD, w)).transpose(-1, -2).reshape(p.shape)
+        for name, p in self.p.items():  # (C, F) and (h, w, C, F) as torch has them: (F, C, h, w)
             if name.endswith(".w"):
                 p = (p[None, None] if p.ndim == 2 else p).permute(3, 2, 0, 1).contiguous()
             self.p[name] = p.requires_grad_()
 
     def forward(self, rgb):
+        """Scores (B, 10, 64, 64)."""
         x = torch.from_numpy(rgb).permute(0, 3, 1, 2).float()
         x = x - x.mean((1, 2, 3), keepdim=True)
         x = x / ((x ** 2).mean((1, 2, 3), keepdim=True).sqrt() + 1)
-        height = torch.linspace(1, -1, x.shape[2])[None, None, :, None].expand(len(x), 1, *x.shape[2:])
+        height = torch.linspace(1, -1, x.shape[2] // 2)[None, None, :, None]
 
         def conv(name, x, padding=0, stride=1):
-            return F.conv2d(x, self.p[f"{name}.w"], self.p[f"{name}.b"], stride, padding)
+            return F.conv2d(x, self.p[f"{name}.w"], self.p.get(f"{name}.b"), stride, padding)
 
-        fine = F.relu(conv("stem", F.pixel_unshuffle(torch.cat([x, height], 1), 2)))
-        x = F.relu(conv("down", fine, 1, 2))
+        fine = F.relu(conv("stem", F.pixel_unshuffle(x, 2)) + conv("height", height))
+        x = F.relu(conv("down", fine, 0, 2))
         x = F.relu(x + conv("block0.second", F.relu(conv("block0.first", x, 1)), 1))
         y = conv("pyramid", x)
         for grid in segnet.GRIDS:
             cells = x.shape[2] // grid
             y = y + F.interpolate(conv(f"pyramid{grid}", F.avg_pool2d(x, cells)), scale_factor=cells)
-        coarse = F.interpolate(conv("coarse", F.relu(y)), scale_factor=2)
-        scores = conv("head", F.relu(conv("fine", fine) + coarse))
-        return scores.reshape(len(rgb), 10, segnet.QUAD, *scores.shape[2:])
+        joined = F.relu(conv("fine", fine) + F.pixel_shuffle(conv("up", F.relu(y)), 2))
+        return F.pixel_shuffle(conv("head", joined), 2)
 
     def scores(self, rgb):
         with torch.no_grad():
             return self.forward(rgb)
 
     def gradients(self, rgb, labels):
-        target = torch.from_numpy(labels).transpose(0, 1)
+        target = torch.from_numpy(segnet.from_quads(labels))
         return torch.autograd.grad(F.cross_entropy(self.forward(rgb), target), list(self.p.values()))
 
 

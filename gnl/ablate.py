@@ -1,0 +1,119 @@
+"""What the paper leaves open, measured: each of choices.py in the place of ours, and some cells run again.
+
+For the time of a run, in the process of that run, the other choice stands in the place of ours. Starts, seeds and luck
+stay, so that effects are differences in pairs.
+"""
+
+import importlib
+import json
+import os
+import re
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+
+from . import episode, learned, nnql, planners
+from .choices import CHOICES, OURS, TRUE_LABELS
+from .compare import paired_difference
+from .experiment import Cell, arrays, costs, now, outcomes
+from .files import write_whole
+from .places import PlaceGrid
+from .report import markdown
+from .robot import N_ACTIONS, Robot
+from .table import Settings, agree, executor, finished, load_starts, path_of, prepare, run_jobs
+from .terminal import Stage
+
+SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
+CELLS = [Cell(world, 0.6, 50, 0) for world in (800, 801, 809)]
+
+
+def add_arguments(parser):
+    """Options of `python -m gnl ablate`."""
+    parser.add_argument("--out", default="out/ablate", help="folder of results (out/ablate)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
+    parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md (all that can be measured)")
+
+
+def run(args):
+    """Run every choice in every cell, where that is not done yet, and print what each changed."""
+    if args.jobs < 1:
+        raise ValueError(f"--jobs: expected at least 1, found {args.jobs}")
+    points = {choice.point for choice in CHOICES}
+    for point in args.points or ():
+        if point not in points:
+            raise ValueError(f"--points: expected some of {', '.join(sorted(points))}, found {point!r}")
+    chosen = [choice for choice in CHOICES if not args.points or choice.point in args.points]
+    chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
+    out = Path(args.out)
+    agree(out / "settings.json", asdict(SETTINGS))
+    jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
+    todo = {name: job for name, job in jobs.items() if not finished(out, name)}
+    if todo:
+        with executor(args.jobs) as pool:
+            senses = prepare(out, SETTINGS, CELLS, args.jobs, pool)
+            stage = Stage("ablate")
+            run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_starts(out, cell))
+                           for name, (choice, cell) in todo.items()}, SETTINGS.episodes, pool, stage)
+            stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
+    text = effects(out, chosen)
+    write_whole(out / "effects.md", text.encode())
+    print(text, end="")
+
+
+def name_of(choice, cell):
+    """For files: field-of-view-60-degrees-800-0.6m-50deg-seed0."""
+    return "-".join(re.findall(r"[\w.]+", f"{choice.point} {choice.other}")) + f"-{cell.name}"
+
+
+def measure(choice, cell, senses, starts):
+    """Outcomes of MV and of Ours under a choice, and what they cost."""
+    began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
+    senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
+    with in_place(choice.constants):
+        senses.net = None if choice.true_labels else senses.net
+        if choice.anew:
+            how = {"epochs": SETTINGS.gcn_epochs, "batch": SETTINGS.gcn_batch, "rate": SETTINGS.gcn_rate}
+            senses.gcn = learned.learn_places(senses, grid, SETTINGS.gcn_views, 0, **how)
+        robot = Robot(senses.world, choice.motion)
+        store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
+        episode.train_nnql(senses, robot, grid, starts["training"], learning, choice.rules, store=store)
+        result = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
+                                                       rules=choice.rules))
+                  for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}
+    return {"name": name_of(choice, cell), "tests": result}, costs(senses, began, sum(map(len, store.values)))
+
+
+@contextmanager
+def in_place(constants):
+    """Other values in the place of constants {"module.NAME": value} of gnl, and back again."""
+    ours = {}
+    try:
+        for name, value in constants.items():
+            module, attribute = name.split(".")
+            module = importlib.import_module(f"gnl.{module}")
+            ours[module, attribute] = getattr(module, attribute)
+            setattr(module, attribute, value)
+        yield
+    finally:
+        for (module, attribute), value in ours.items():
+            setattr(module, attribute, value)
+
+
+def effects(out, chosen):
+    """A row for each choice: what MV and Ours get right more often with it than beside it, in points."""
+    def right(choice, method):
+        parts = [json.loads(path_of(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
+        return np.concatenate([arrays(part["place"])[:, -1] for part in parts])
+
+    rows = []
+    for choice in chosen:
+        beside = TRUE_LABELS if choice.true_labels and choice is not TRUE_LABELS else OURS
+        row = [choice.point, choice.other, "true labels" if beside is TRUE_LABELS else "ours"]
+        for method in ("MV", "Ours"):
+            d, low, high = (100 * value for value in paired_difference(right(choice, method), right(beside, method)))
+            share = 100 * right(choice, method).mean()
+            row.append(f"{share:.1f}" if choice is OURS else f"{d:+.1f} [{low:+.1f}, {high:+.1f}]")
+        rows.append(row)
+    return markdown(["open", "choice", "beside", "MV", "Ours"], rows) + "\n"

@@ -1,0 +1,124 @@
+"""Other choices than ours where the paper is open: `python -m gnl ablate` measures what each would change.
+
+A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name.
+"""
+
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from .episode import Rules
+from .gcn import GCN
+from .nn import softmax
+from .particles import FLOOR
+from .ranks import reciprocal_ranks
+from .robot import N_ACTIONS, Motion
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Another choice than ours; a GCN is learned anew where it changes what is seen."""
+
+    point: str  # the row of tutorials/open_points.md
+    other: str
+    rules: Rules = Rules()
+    store: dict = field(default_factory=dict)
+    motion: Motion = Motion()
+    constants: dict = field(default_factory=dict)
+    n_more: int = 0  # numbers of a state beside one for each place
+    true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
+    anew: bool = False
+
+
+def probabilities(scores, _pooled, _actions):
+    """State: probabilities instead of reciprocal ranks."""
+    return softmax(scores).astype(np.float32)
+
+
+def best_place(scores, _pooled, _actions):
+    """State: the best place alone, one-hot."""
+    return np.eye(scores.shape[1], dtype=np.float32)[scores.argmax(1)]
+
+
+def filter_ranks(_scores, pooled, _actions):
+    """State: the reciprocal ranks of the filter's belief instead of the view's."""
+    return reciprocal_ranks(pooled)
+
+
+def with_last_action(scores, _pooled, actions):
+    """State: the view's ranks and, as far apart as two views can be, the last action."""
+    last = np.zeros((len(scores), N_ACTIONS + 1), np.float32)
+    last[np.arange(len(scores)), 0 if actions is None else actions + 1] = 1
+    return np.concatenate([reciprocal_ranks(scores), last], 1)
+
+
+def at_the_end(right, _belief, done):
+    """Reward after the last step alone."""
+    return np.where(done, np.where(right, 1.0, -1.0), 0.0)
+
+
+def by_rank(scores):
+    """Likelihood of a place: its reciprocal rank."""
+    return reciprocal_ranks(scores) + FLOOR
+
+
+def first_of_equals(q, _rng):
+    """Ties: the first of equal actions."""
+    return q.argmax(1)
+
+
+class BruteForce:
+    """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them."""
+
+    def __init__(self, dim):
+        self.points = np.empty((0, dim), np.float32)
+
+    def add(self, points):
+        ids = np.arange(len(self.points), len(self.points) + len(points))
+        self.points = np.concatenate([self.points, points])
+        return ids
+
+    def query(self, points, k, n_first=None):
+        there = self.points[:n_first]
+        squares = (points ** 2).sum(1)[:, None] + (there ** 2).sum(1) - 2 * points @ there.T
+        order = np.argsort(squares.clip(0), 1, kind="stable")[:, :k]
+        distances = np.sqrt(np.take_along_axis(squares.clip(0), order, 1).astype(float))
+        lacking = ((0, 0), (0, k - order.shape[1]))
+        return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)
+
+
+CAMERA, VIEW = "camera.FIELD_OF_VIEW_RAD", "strip.FIELD_OF_VIEW_RAD"
+CHOICES = [
+    Choice("labels of the views", "true labels", true_labels=True, anew=True),
+    Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),
+    Choice("field of view", "60 degrees", constants={CAMERA: np.pi / 3, VIEW: np.pi / 3}, true_labels=True, anew=True),
+    Choice("field of view", "120 degrees", constants={CAMERA: 2 * np.pi / 3, VIEW: 2 * np.pi / 3}, true_labels=True,
+           anew=True),
+    Choice("region", "8-connected", constants={"scene_graph.DIAGONAL_PX": 1}, anew=True),
+    Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
+    Choice("width of the GCN", "256", constants={"gcn.GCN": partial(GCN, hidden=256)}, anew=True),
+    Choice("likelihood of a particle", "reciprocal rank", Rules(likelihood=by_rank)),
+    Choice("floor of the likelihood", "1e-2", constants={"episode.FLOOR": 1e-2}),
+    Choice("floor of the likelihood", "1e-4", constants={"episode.FLOOR": 1e-4}),
+    Choice("motion noise of the filter", "none", constants={"particles.STD_M": 0.0, "particles.STD_RAD": 0.0}),
+    Choice("motion noise of the filter", "10 cm, 0.1 rad", constants={"particles.STD_M": 0.1,
+                                                                     "particles.STD_RAD": 0.1}),
+    Choice("noise of the odometry", "none", motion=Motion(std_m=0.0, std_rad=0.0)),
+    Choice("answer, pooling of particles to places", "max", Rules(pooling="max")),
+    Choice("actions: turn", "60 degrees", motion=Motion(turn_rad=np.pi / 3)),
+    Choice("actions: forward", "0.25 m", motion=Motion(forward_m=0.25)),
+    Choice("actions: forward", "1 m", motion=Motion(forward_m=1.0)),
+    Choice("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
+    Choice("state", "best place, one-hot", Rules(state=best_place), {"index": BruteForce}),
+    Choice("state", "the filter's ranks", Rules(state=filter_ranks)),
+    Choice("state", "ranks and last action", Rules(state=with_last_action), {"index": BruteForce},
+           n_more=N_ACTIONS + 1),
+    Choice("reward", "after the last step alone", Rules(reward=at_the_end)),
+    Choice("neighbours", "k = 1", store={"k": 1}),
+    Choice("neighbours", "k = 16", store={"k": 16}),
+    Choice("neighbours", "k = 64", store={"k": 64}),
+    Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),
+    Choice("order of learning", "one robot at a time", constants={"episode.SIDE_BY_SIDE": 1}),
+]
+OURS, TRUE_LABELS = Choice("all", "ours"), CHOICES[0]
