@@ -34,10 +34,11 @@ def add_arguments(parser):
     parser.add_argument("--out", default="out/ablate", help="folder of results (out/ablate)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
     parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md (all that can be measured)")
+    parser.add_argument("--page", help="a page like tutorials/open_points.md, to fill the effects into its tables")
 
 
 def run(args):
-    """Run every choice in every cell, where that is not done yet, and print what each changed."""
+    """Run every choice in every cell, where that is not done yet, and tell what each changed."""
     if args.jobs < 1:
         raise ValueError(f"--jobs: expected at least 1, found {args.jobs}")
     points = {choice.point for choice in CHOICES}
@@ -57,9 +58,10 @@ def run(args):
             run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_starts(out, cell))
                            for name, (choice, cell) in todo.items()}, SETTINGS.episodes, pool, stage)
             stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
-    text = effects(out, chosen)
-    write_whole(out / "effects.md", text.encode())
-    print(text, end="")
+    measured = effects(out, chosen)
+    print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
+    if args.page:
+        write_whole(args.page, filled(Path(args.page).read_text(), measured).encode())
 
 
 def name_of(choice, cell):
@@ -102,7 +104,7 @@ def in_place(constants):
 
 
 def effects(out, chosen):
-    """A row for each choice: what MV and Ours get right more often with it than beside it, in points."""
+    """What MV and Ours get right more often with each choice than beside it, in points: rows of words."""
     def right(choice, method):
         parts = [json.loads(path_of(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
         return np.concatenate([arrays(part["place"])[:, -1] for part in parts])
@@ -110,10 +112,24 @@ def effects(out, chosen):
     rows = []
     for choice in chosen:
         beside = TRUE_LABELS if choice.true_labels and choice is not TRUE_LABELS else OURS
-        row = [choice.point, choice.other, "true labels" if beside is TRUE_LABELS else "ours"]
+        row = [choice.point, choice.other, beside.other]
         for method in ("MV", "Ours"):
             d, low, high = (100 * value for value in paired_difference(right(choice, method), right(beside, method)))
             share = 100 * right(choice, method).mean()
             row.append(f"{share:.1f}" if choice is OURS else f"{d:+.1f} [{low:+.1f}, {high:+.1f}]")
         rows.append(row)
-    return markdown(["open", "choice", "beside", "MV", "Ours"], rows) + "\n"
+    return rows
+
+
+def filled(page, measured):
+    """A page whose tables have the effects in the last cell of each row that begins with the name of a point."""
+    words = {}
+    for point, other, _beside, mv, ours in measured:
+        words.setdefault(point, []).append(f"{other}: MV {mv}, Ours {ours}")
+    lines = page.split("\n")
+    for i, line in enumerate(lines):
+        cells = line.split(" | ")
+        point = cells[0].removeprefix("| ")
+        if line.startswith("| ") and point in words:
+            lines[i] = " | ".join([*cells[:-1], "; ".join(words[point]) + " |"])
+    return "\n".join(lines)

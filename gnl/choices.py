@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
+from scipy import ndimage
 
 from .episode import Rules
 from .gcn import GCN
 from .nn import softmax
+from .nnql import SAME
 from .particles import FLOOR
 from .ranks import reciprocal_ranks
 from .robot import N_ACTIONS, Motion
@@ -68,6 +70,19 @@ def first_of_equals(q, _rng):
     return q.argmax(1)
 
 
+def touching_at_corners(labels):
+    """Regions whose pixels are connected by sides or corners (8-connected): as scene_graph.regions."""
+    found = []
+    for view, image in enumerate(labels):
+        for label in np.unique(image):
+            numbered, _ = ndimage.label(image == label, np.ones((3, 3)))
+            area = np.bincount(numbered.ravel())[1:]
+            found += [(view, label, n, x.start, y.start, x.stop, y.stop)
+                      for n, (y, x) in zip(area, ndimage.find_objects(numbered), strict=True)]
+    view, label, area, *boxes = np.array(found).T
+    return view, label, area, np.stack(boxes, 1)
+
+
 class BruteForce:
     """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them."""
 
@@ -78,6 +93,11 @@ class BruteForce:
         ids = np.arange(len(self.points), len(self.points) + len(points))
         self.points = np.concatenate([self.points, points])
         return ids
+
+    def find(self, points):
+        """The oldest equal point of each query, or -1."""
+        distance, found = self.query(points, 1)
+        return np.where(distance[:, 0] <= SAME, found[:, 0], -1)
 
     def query(self, points, k, n_first=None):
         there = self.points[:n_first]
@@ -95,7 +115,7 @@ CHOICES = [
     Choice("field of view", "60 degrees", constants={CAMERA: np.pi / 3, VIEW: np.pi / 3}, true_labels=True, anew=True),
     Choice("field of view", "120 degrees", constants={CAMERA: 2 * np.pi / 3, VIEW: 2 * np.pi / 3}, true_labels=True,
            anew=True),
-    Choice("region", "8-connected", constants={"scene_graph.DIAGONAL_PX": 1}, anew=True),
+    Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
     Choice("width of the GCN", "256", constants={"gcn.GCN": partial(GCN, hidden=256)}, anew=True),
     Choice("likelihood of a particle", "reciprocal rank", Rules(likelihood=by_rank)),

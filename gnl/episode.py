@@ -189,26 +189,28 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
     return store
 
 
-def best_sequence(senses, robot, grid, starts, seed, rules=None):
-    """The fixed action sequence that leaves most belief in the true place, over `starts` (n, 3): (L,).
+def race(senses, robot, grid, starts, seed, rules=None):
+    """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,), the best first.
 
-    Of 41 sequences the luckiest looks best, so they race: after each round the best third goes on, from twice as many
-    new starts. In a round every sequence is run from every start.
+    A sequence is worth the belief that it leaves in the true place, in the mean. Of 41 the luckiest looks best, so they
+    race: after each round the best third goes on, from three times as many new starts, the same for all.
     """
     length = (rules or Rules()).length
-    sequences, n_rounds, first = planners.sequences(length), length, 0
-    total = np.zeros(len(sequences))
-    for rank, child in enumerate(_seed(seed).spawn(n_rounds)):
-        size = max(1, len(starts) * 2 ** rank // (2 ** n_rounds - 1))
-        groups = side_by_side(np.arange(size * len(sequences)))
+    sequences, first = planners.sequences(length), 0
+    total, count, running = np.zeros(len(sequences)), np.zeros(len(sequences)), np.arange(len(sequences))
+    for rank, child in enumerate(_seed(seed).spawn(length)):
+        size = max(1, len(starts) * 2 * 3 ** rank // (3 ** length - 1))
+        groups = side_by_side(np.arange(size * len(running)))
         for group, grandchild in zip(groups, child.spawn(len(groups)), strict=True):
-            start, which = np.divmod(group, len(sequences))
-            record = run(senses, robot, grid, planners.scan(sequences[which]), starts[(first + start) % len(starts)],
-                         grandchild, rules)
-            np.add.at(total, which, record.belief[:, -1])
-        best = np.argsort(-total, kind="stable")[:-(-len(total) // 3)]
-        sequences, total, first = sequences[best], total[best], first + size
-    return sequences[0]
+            start, which = np.divmod(group, len(running))
+            plan = planners.scan(sequences[running[which]])
+            record = run(senses, robot, grid, plan, starts[(first + start) % len(starts)], grandchild, rules)
+            np.add.at(total, running[which], record.belief[:, -1])
+        first, count[running] = first + size, count[running] + size
+        running = running[np.argsort(-total[running], kind="stable")[:-(-len(running) // 3)]]
+    worth = total / count
+    order = np.append(running, np.setdiff1d(np.argsort(-worth, kind="stable"), running, assume_unique=True))
+    return sequences[order], worth[order]
 
 
 def _update(belief, odometry, likelihood_of_view):

@@ -23,7 +23,7 @@ from .places import PlaceGrid
 from .robot import Robot
 
 N_CHECKPOINTS = 10
-SCAN_STARTS = 120  # training starts over which the fixed sequences race
+RACE_STARTS = 320  # training starts over which the fixed sequences race
 GAPS_M, GAPS_DEG = (0.2, 0.4, 0.6, 0.8, 1.0), (10, 30, 50, 70, 90)  # the paper's, 25 in all
 
 
@@ -60,16 +60,16 @@ def run_cell(cell, senses, starts):
     lived = Experience()
     store = episode.train_nnql(senses, robot, grid, training, learning,
                                checkpoint_every=len(training) // N_CHECKPOINTS, watch=lived.watch)
-    options = senses.timed("options", Options, lived, episode.LENGTH)
-    sequence = episode.best_sequence(senses, robot, grid, training[:SCAN_STARTS], racing)
+    sequences, worth = episode.race(senses, robot, grid, training[:RACE_STARTS], racing)
+    options = senses.timed("options", Options, lived, sequences, worth)
 
     def test(plan, poses, seed):
         return outcomes(grid, episode.run_all(senses, robot, grid, plan, poses, seed))
 
-    plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours+": planners.go_on(options)}
+    plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours+": planners.go_on(options)}
     tests = {name: test(plan, starts["tests"], testing) for name, plan in plans.items()}
     past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
-    result = {"name": cell.name, "cell": asdict(cell), "sequence": sequence.tolist(), "tests": tests,
+    result = {"name": cell.name, "cell": asdict(cell), "sequence": sequences[0].tolist(), "tests": tests,
               "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
               "validation": [test(plan, starts["validation"], validating) for plan in past]}
     return result, costs(senses, began, sum(map(len, store.values)))

@@ -120,7 +120,7 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
     """Best fixed action sequence over `n_starts` random starts: a function that waits till `helper` has found it."""
     settings = {**settings, "starts": n_starts, "seed": seed}
     known = path_of(folder, "scan", settings).exists()
-    sought = None if known else helper.submit(race, senses, grid, n_starts, seed)
+    sought = None if known else helper.submit(best_sequence, senses, grid, n_starts, seed)
 
     def learn(path):
         save_arrays(path, settings, sequence=sought.result())
@@ -135,10 +135,10 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
     return lambda: kept(folder, "scan", settings, load, learn)
 
 
-def race(senses, grid, n_starts, seed):
-    """`episode.best_sequence` from random starts."""
+def best_sequence(senses, grid, n_starts, seed):
+    """The winner of a race from random starts."""
     starts = senses.world.free_poses(n_starts, np.random.default_rng(seed))
-    return episode.best_sequence(senses, Robot(senses.world), grid, starts, seed)
+    return episode.race(senses, Robot(senses.world), grid, starts, seed)[0][0]
 
 
 def top_places(network, graphs, places):

@@ -2,13 +2,16 @@
 
 NNQL chooses anew after every look, from the latest view alone. It cannot know what it did last and often undoes it.
 An option (Sutton, Precup and Singh 1999) cannot: it is one action, done again and again. What options are worth is
-learned from the very steps that NNQL lived through, by the mean of neighbours, as there:
+learned from the very steps that NNQL lived through, by the mean of neighbours, as there, and from the race of the
+fixed sequences, of which the options are three:
 
-    V_d(s, a) = mean over the k nearest (s', a) of [ r + V_{d-1}(s'', a) ],     V_0 = 0
+    V_d(s, a) = mean over the k nearest (s', a) of [ r / L + V_{d-1}(s'', a) ],     V_0 = 0
+    Q(s, a)   = V_L(s, a) - mean of V_L(., a) over first views + worth of a in the race
 
-    s, s'  a state (B, K), a remembered one     a   the action that is gone on with
-    s''    what was seen after a was done in s' r   1 / rank of the true place in s'', the dense kin of right or wrong
-    d      steps to go                          k   many, since one value differs little from another
+    s, s'  a state (B, K), a remembered one          a   the action that is gone on with
+    s''    what was seen after a was done in s'      d   steps to go, of L
+    r      1 / rank of the true place in s'': dense and hardly noisy, where right or wrong is mostly luck
+    k      many, for values differ little from view to view, and what each of them says is noisy
 """
 
 import numpy as np
@@ -16,48 +19,64 @@ import numpy as np
 from .robot import N_ACTIONS
 
 K_NEIGHBOURS = 100
-AT_ONCE = 512  # queries whose distances to all that is remembered are held in memory
+MOST_STEPS = 7000  # of one action; twice as many take four times as long and teach no more
+FIRST_VIEWS = 2000  # over which a mean is taken
+AT_ONCE = 512  # queries whose likeness to all that is remembered is held in memory
 
 
 class Experience:
-    """Every step of some episodes: states, actions and rewards, episode by episode."""
+    """Every step of some episodes: states, actions and rewards, one after the other."""
 
     def __init__(self):
-        self.seen, self.actions, self.states, self.rewards = [], [], [], []
+        self.steps, self.seen, self.actions, self.states, self.rewards = [], [], [], [], []
 
     def watch(self, step, seen, actions, states, places, **_):
         """Remember a look of robots side by side; for `episode.run`."""
         if step:
+            self.steps.append(np.full(len(actions), step))
             self.seen.append(seen)
             self.actions.append(actions)
             self.states.append(states)
             self.rewards.append(states[np.arange(len(states)), places])  # a state holds 1 / rank of every place
 
+    def arrays(self):
+        """Steps (1 after the first view), states before, actions, states after, rewards."""
+        return (np.concatenate(part) for part in (self.steps, self.seen, self.actions, self.states, self.rewards))
+
 
 class Options:
-    """What going on with each action is worth, from an Experience."""
+    """What going on with each action is worth, from an Experience and a race.
 
-    def __init__(self, experience, length, k=K_NEIGHBOURS):
-        self.k = k
-        seen, actions, states, rewards = (np.concatenate(part) for part in vars(experience).values())
-        self.seen, self.worth = [], []
+    sequences, worth : fixed sequences of actions (n, L), all of one action among them, and what they were worth (n,)
+    """
+
+    def __init__(self, experience, sequences, worth, k=K_NEIGHBOURS):
+        steps, seen, actions, states, rewards = experience.arrays()
+        first, length = seen[steps == 1][:FIRST_VIEWS], sequences.shape[1]
+        self.k, self.seen, self.ahead = k, [], []
         for a in range(N_ACTIONS):
-            rows = np.flatnonzero(actions == a)
-            near = nearest(states[rows], seen[rows], k)
-            ahead = np.zeros(len(rows))  # V of the states after the steps, with ever more steps to go
-            for _ in range(length - 1):
-                ahead = (rewards[rows] + ahead)[near].mean(1)
+            rows = np.flatnonzero(actions == a)[:MOST_STEPS]
+            near, reward = nearest(states[rows], seen[rows], k), rewards[rows] / length
+            ahead = reward  # of each remembered step: its reward and V of the state after it, with more and more to go
+            for _ in range(length - 1 if len(rows) else 0):
+                ahead = reward + ahead[near].mean(1)
             self.seen.append(seen[rows])
-            self.worth.append(rewards[rows] + ahead)
+            self.ahead.append(ahead)
+        in_race = np.array([worth[(sequences == a).all(1)][0] for a in range(N_ACTIONS)])
+        self.offset = in_race - self.values(first).mean(0)
 
     def values(self, states):
-        """V of each action at the start of an episode: (B, K) -> (B, A); 0 for one that was never tried."""
-        return np.stack([worth[nearest(states, seen, self.k)].mean(1) if len(seen) else np.zeros(len(states))
-                         for seen, worth in zip(self.seen, self.worth, strict=True)], 1)
+        """V_L of each action: (B, K) -> (B, A); 0 for one that was never tried."""
+        return np.stack([ahead[nearest(states, seen, self.k)].mean(1) if len(seen) else np.zeros(len(states))
+                         for seen, ahead in zip(self.seen, self.ahead, strict=True)], 1)
+
+    def q_values(self, states):
+        """Belief in the true place to be expected after going on with each action: (B, K) -> (B, A)."""
+        return self.values(states) + self.offset
 
 
 def nearest(states, seen, k):
-    """The k nearest of `seen` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)) int.
+    """The k nearest of `seen` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)) int, unordered.
 
     All states have one length, so the nearest have the greatest dot product.
     """

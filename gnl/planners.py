@@ -42,7 +42,7 @@ def go_on(options):
     def plan(step, states, rng):
         nonlocal chosen
         if step == 0:
-            chosen = best_actions(options.values(states), rng)
+            chosen = best_actions(options.q_values(states), rng)
         return chosen
     return plan
 

@@ -13,7 +13,7 @@ import pytest
 import gnl
 from data_gen.rooms import make_home
 from gnl import episode, planners
-from gnl.episode import Record, Rules, Senses, best_sequence, probability, run, run_all, side_by_side, train_nnql
+from gnl.episode import Record, Rules, Senses, probability, race, run, run_all, side_by_side, train_nnql
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid, wrap_angle
 from gnl.ranks import reciprocal_ranks
@@ -255,7 +255,11 @@ def test_the_search_finds_the_sequence_after_which_one_sees_where_one_is(planted
         there = np.isclose(poses[:, None], goals[None], atol=1e-6).all(2).any(1)
         return np.where(there[:, None], knows(poses), 0.0)
 
-    found = best_sequence(Sense(score), Glide(), GRID, first, 0, Rules(length=3))
+    sequences, worth = race(Sense(score), Glide(), GRID, first, 0, Rules(length=3))
+    assert sorted(map(tuple, sequences.tolist())) == sorted(map(tuple, planners.sequences(3).tolist()))
+    assert worth[0] > 0.9
+    assert (worth[1:] < 0.5).all()
+    found = sequences[0]
     reached = first
     for action in found:
         reached, _, _ = Glide().step(reached, np.full(len(reached), action), rng)

@@ -107,9 +107,10 @@ def test_a_choice_goes_on_to_the_end_of_its_comment(tmp_path):
 
 
 def listed():
-    """(file, text) of each row of the table of open points."""
+    """(file, text) of each row of the first table of open points."""
+    table = OPEN_POINTS.read_text().partition("\n| ")[2].partition("\n\n")[0]
     rows = [[cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-            for line in OPEN_POINTS.read_text().splitlines() if line.startswith("|")]
+            for line in f"| {table}".splitlines()]
     head = next(i for i, row in enumerate(rows) if {"choice", "where"} <= set(row))
     choice, where = rows[head].index("choice"), rows[head].index("where")
     return {(str((OPEN_POINTS.parent / link).resolve().relative_to(ROOT.resolve())), row[choice])

@@ -1,0 +1,101 @@
+"""Options: what going on with an action is worth, by hand and in a world where it can be known."""
+
+import numpy as np
+import pytest
+
+from gnl import options, planners
+from gnl.options import Experience, Options, nearest
+from gnl.ranks import reciprocal_ranks
+from gnl.robot import N_ACTIONS
+
+K = 30
+
+
+def ranking(*first, n=K):
+    """A state whose best places are `first`, in order."""
+    return reciprocal_ranks(-np.array([[first.index(p) if p in first else n + p for p in range(n)]], float))[0]
+
+
+def lived(*steps):
+    """An Experience of steps (seen, action, state, place), one robot each."""
+    experience = Experience()
+    for seen, action, state, place in steps:
+        experience.watch(1, seen=seen[None], actions=np.array([action]), states=state[None], places=np.array([place]))
+    return experience
+
+
+def options_of(experience, length, k, worth=(0, 0, 0)):
+    """Options of an Experience, the three sequences of one action being worth so much."""
+    return Options(experience, np.repeat(np.arange(N_ACTIONS)[:, None], length, 1), np.array(worth, float), k)
+
+
+def test_an_experience_is_the_steps_and_how_well_the_true_place_ranked_after_each():
+    a, b = ranking(3, 1), ranking(1, 3)
+    experience = lived((a, 0, b, 3), (b, 2, a, 3))
+    experience.watch(0, seen=None, actions=None, states=a[None], places=np.array([0]))  # the first look is no step
+    steps, seen, actions, states, rewards = experience.arrays()
+    assert (steps.tolist(), actions.tolist(), rewards.tolist()) == ([1, 1], [0, 2], [0.5, 1.0])
+    np.testing.assert_array_equal(seen, [a, b])
+    np.testing.assert_array_equal(states, [b, a])
+
+
+def test_a_small_case_by_hand():
+    # Left leads from a to b (true place second, 1/2) and from b to c (first, 1); from c back to a (third, 1/3).
+    a, b, c = ranking(1, 2, 3), ranking(11, 12, 13), ranking(21, 22, 23)
+    experience = lived((a, 0, b, 12), (b, 0, c, 21), (c, 0, a, 3), (a, 1, a, 1))
+    one_step, two, three = (options_of(experience, length, 1).values(np.stack([a, b, c])) for length in (1, 2, 3))
+    assert one_step[:, 0] == pytest.approx([1 / 2, 1, 1 / 3])
+    assert two[:, 0] == pytest.approx([(1 / 2 + 1) / 2, (1 + 1 / 3) / 2, (1 / 3 + 1 / 2) / 2])
+    assert three[:, 0] == pytest.approx([(1 / 2 + 1 + 1 / 3) / 3] * 3)
+    assert three[:, 1] == pytest.approx([1, 1, 1])  # the one step that there is, again and again
+    assert three[:, 2].tolist() == [0, 0, 0]  # never tried
+
+
+def test_over_all_first_views_an_option_is_worth_what_it_was_in_the_race():
+    rng = np.random.default_rng(0)
+    first, after = reciprocal_ranks(rng.random((60, K))), reciprocal_ranks(rng.random((60, K)))
+    experience = lived(*zip(first, rng.integers(3, size=60), after, rng.integers(K, size=60), strict=True))
+    made = options_of(experience, 4, 5, worth=(0.3, 0.5, 0.1))
+    assert made.q_values(first).mean(0) == pytest.approx([0.3, 0.5, 0.1])
+    assert made.q_values(first).std(0).min() > 0
+
+
+def test_all_neighbours_count_alike():
+    a, near, far = ranking(1, 2, 3), ranking(1, 3, 2), ranking(21, 22)
+    experience = lived((a, 0, far, 22), (near, 0, far, 21), (far, 0, far, 23))
+    assert options_of(experience, 1, 2).values(a[None])[0, 0] == pytest.approx((1 / 2 + 1) / 2)
+
+
+@pytest.mark.parametrize("k", [1, 7, 40, 200])
+def test_the_nearest_are_those_of_brute_force(k, monkeypatch):
+    monkeypatch.setattr(options, "AT_ONCE", 16)
+    rng = np.random.default_rng(0)
+    seen, states = reciprocal_ranks(rng.random((90, K))), reciprocal_ranks(rng.random((50, K)))
+    found = nearest(states, seen, k)
+    assert found.shape == (50, min(k, 90))
+    distance = np.linalg.norm(states[:, None].astype(float) - seen[None], axis=2)
+    for row, chosen in zip(distance, found, strict=True):
+        assert len(set(chosen.tolist())) == min(k, 90)
+        np.testing.assert_allclose(np.sort(row[chosen]), np.sort(row)[:min(k, 90)], atol=1e-6)
+
+
+def test_the_better_direction_is_found_where_it_depends_on_the_first_view():
+    """Two kinds of views: in the one it pays to turn left on and on, in the other right; all else is noise."""
+    rng, kinds = np.random.default_rng(0), (ranking(0, 1, 2), ranking(15, 16, 17))
+
+    def view(kind):
+        scores = 4 * kinds[kind].astype(float) + 0.3 * rng.random(K)
+        return reciprocal_ranks(scores[None])[0]
+
+    experience = Experience()
+    for _ in range(2000):
+        kind, action = rng.integers(2), rng.integers(N_ACTIONS)
+        state, good = view(kind), action == kind
+        place = np.argsort(-state)[0 if rng.random() < (0.6 if good else 0.4) else 3]
+        experience.watch(1, seen=view(kind)[None], actions=np.array([action]), states=state[None],
+                         places=np.array([place]))
+    plan = planners.go_on(options_of(experience, 4, 100))
+    kind = np.arange(60) % 2
+    first = plan(0, np.stack([view(one) for one in kind]), rng)
+    assert (first == kind).mean() > 0.9
+    assert (plan(1, None, rng) == first).all()  # and it goes on, whatever it sees
