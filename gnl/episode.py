@@ -20,7 +20,7 @@ from .ranks import reciprocal_ranks
 from .scene_graph import join, scene_graph
 
 LENGTH = 4
-SIDE_BY_SIDE = 32  # episodes in lockstep: some fifty calls of NumPy cost the same for one as for many
+SIDE_BY_SIDE = 64  # episodes in lockstep: some fifty calls of NumPy cost the same for one as for many
 
 
 @dataclass

@@ -61,6 +61,17 @@ class KDTree:
             arrivals += [(child, half) for child, half in halves if len(half)]
         return ids
 
+    def find(self, points):
+        """The oldest stored point that equals each of points (B, dim), or -1: (B,). The way down leads to its leaf."""
+        points, found = check_points(points, self._points.shape[1]), []
+        for point in points:
+            node = self._root
+            while not node.is_leaf:
+                node = node.left if point[node.axis] <= node.cut else node.right
+            equal = (self._points[node.ids] == point).all(axis=1)
+            found.append(node.ids[equal].min(initial=self._n))
+        return np.where(np.array(found, int) < self._n, found, -1).astype(int)
+
     def query(self, points, k, n_first=None):
         """The k nearest stored points of each query, nearest first, ties to the older point.
 

@@ -1,17 +1,26 @@
 """Nearest-neighbour Q-learning: Q-values of remembered state-action pairs (section IV-D, equations 1 and 2).
 
-Only pairs that were lived through are stored. The value of any other pair is the mean over its k nearest stored
-ones; a pair that was met before has its own value.
+Q(s, a) is how much reward to expect from doing a where the view is s. Only pairs that were lived through are stored,
+each with a value of its own. Any other pair has the mean value of its neighbours.
 
-    Q(s, a) = |N(s, a)|^-1 sum over (s', a') in N(s, a) of Q(s', a')                         (1)
+    Q(s, a) = |N(s, a)|^-1 sum over (s', a) in N(s, a) of Q(s', a)                           (1)
     Q(s, a) <- Q(s, a) + alpha [r + gamma max_a' Q(s', a') - Q(s, a)]                        (2)
+
+    N(s, a)   the k stored pairs *of the same action* a whose states are nearest to s; if (s, a) itself is
+              stored, it alone; nothing if a was never tried
+    (s', a')  in the paper two things by one name: in (1) a neighbour, where a' can only be a, so we write a;
+              in (2) s' is the state that came after s, and a' any action that could be done there
 
     B states side by side   K numbers a state   A actions   n pairs of one action, in order of birth
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from .checkpoints import Checkpoints
 from .files import load_arrays, save_arrays
+from .kdtree import lengths
 from .rank_index import RankIndex
 
 K_NEIGHBOURS, ALPHA, GAMMA = 4, 0.1, 0.9
@@ -21,6 +30,56 @@ SAME = 1e-6  # distance within which a state counts as met before
 def epsilon(episode):
     """Share of random actions in the n-th training episode: 1 / (0.1 (n + 1) + 1)."""
     return 1 / (0.1 * (np.asarray(episode) + 1) + 1)
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """N(s, a) of B states and one action, nearest first, ties to the older pair."""
+
+    distance: np.ndarray  # (B, k); inf where there are fewer
+    pair: np.ndarray  # (B, k) number of the pair; -1 where there are fewer
+
+    @classmethod
+    def find(cls, index, states, k, n_first):
+        """Among the first n_first pairs; a later one is not available (N/A)."""
+        distance, pair = np.full((len(states), k), np.inf), np.full((len(states), k), -1)
+        itself = index.find(states)  # much cheaper than its neighbours
+        met = (itself >= 0) & (itself < n_first)
+        distance[met, 0], pair[met, 0] = 0, itself[met]
+        if not met.all():
+            distance[~met], pair[~met] = index.query(states[~met], k, n_first)
+        return cls._of(distance, pair)
+
+    def joined_by(self, states, newborn, ids):
+        """The same after pairs of the states `newborn` (m, K) were stored with the numbers ids (m,)."""
+        k, S, born = self.pair.shape[1], states.astype(float), newborn.astype(float)
+        # Few of the newborn are near. Which ones, |s|^2 + |b|^2 - 2 s.b tells nearly; the rest can stay inf.
+        size = (S ** 2).sum(1)[:, None]
+        roughly = size + (born ** 2).sum(1) - 2 * S @ born.T
+        near = (roughly <= self.distance[:, -1:] ** 2 + 1e-6 * size) & (self.itself < 0)[:, None]
+        who, which = near.nonzero()
+        apart = np.full(near.shape, np.inf)
+        apart[who, which] = lengths(born[which] - S[who])
+        distance, pair = np.append(self.distance, apart, 1), np.append(self.pair, np.tile(ids, (len(states), 1)), 1)
+        nearest = distance.argsort(1, kind="stable")[:, :k]  # stable: the older come first and stay first
+        return self._of(np.take_along_axis(distance, nearest, 1), np.take_along_axis(pair, nearest, 1))
+
+    @classmethod
+    def _of(cls, distance, pair):
+        """If the nearest pair is (s, a) itself, it alone."""
+        others = (distance[:, :1] <= SAME) & (np.arange(pair.shape[1]) > 0)
+        return cls(np.where(others, np.inf, distance), np.where(others, -1, pair))
+
+    def mean(self, values):
+        """Equation 1: values (n,) of the pairs -> (B,); 0 where there is no neighbour."""
+        there = self.pair >= 0
+        n = there.sum(1)
+        return np.where(there, values[self.pair], 0.0).sum(1) / n.clip(1) if n.any() else np.zeros(len(n))
+
+    @property
+    def itself(self):
+        """Number of the pair (s, a) if it is stored, or else -1: (B,)."""
+        return np.where(self.distance[:, 0] <= SAME, self.pair[:, 0], -1)
 
 
 class NNQL:
@@ -33,12 +92,12 @@ class NNQL:
         self.k, self.alpha, self.gamma = k, alpha, gamma
         self.index = [index(n_places) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
-        self.log = []  # a checkpoint is, for each action, how many pairs there were and which values had changed
-        self._logged = [np.empty(0) for _ in range(n_actions)]
+        self.log = Checkpoints(n_actions)
+        self._states, self._found = None, []  # what was looked up last, and of each action its Neighbours
 
     def q_values(self, states):
         """Equation 1: states (B, K) -> (B, A). An action that was never tried has value 0."""
-        return np.stack([self._recall(states, a)[0] for a in range(len(self.index))], 1)
+        return _q_values(self._neighbours(states), self.values)
 
     def learn(self, states, actions, rewards, next_states, done):
         """Equation 2 for B transitions; states, next_states (B, K), actions (B,), rewards (B,).
@@ -46,102 +105,96 @@ class NNQL:
         done : (B,) bool, nothing comes after
         """
         # DIFFERS: what robots side by side live through in one step is learned at once, from one and the same Q.
-        ahead = np.where(done, 0.0, self.q_values(next_states).max(1))
+        states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
+        found = self._neighbours(states)
+        if done.all():
+            ahead, self._states = 0.0, None  # nobody will ask for what comes after
+        else:
+            ahead = np.where(done, 0.0, self.q_values(next_states).max(1))
         target = rewards + self.gamma * ahead
         for a in range(len(self.index)):
             rows = np.flatnonzero(actions == a)
             if len(rows):
-                self._learn(states[rows], a, target[rows])
+                q, pair = found[a].mean(self.values[a])[rows], found[a].itself[rows]
+                self._learn(states[rows], a, q, pair, target[rows])
 
-    def _learn(self, states, a, target):
-        q, known = self._recall(states, a)
+    def _learn(self, states, a, q, pair, target):
         values, born, births = self.values[a], {}, []  # births: values of the pairs that this step adds
         for i, state in enumerate(states):
-            if known[i] >= 0:
-                values[known[i]] += self.alpha * (target[i] - values[known[i]])
+            if pair[i] >= 0:
+                values[pair[i]] += self.alpha * (target[i] - values[pair[i]])
                 continue
             # CHOICE: a new pair is stored with Q + alpha (target - Q), Q the mean of its neighbours, 0 without any.
-            pair = born.setdefault(state.tobytes(), len(births))  # the second robot to meet it finds it there
-            if pair == len(births):
+            new = born.setdefault(state.tobytes(), len(births))  # the second robot to meet it finds it there
+            if new == len(births):
                 births.append(q[i])
-            births[pair] += self.alpha * (target[i] - births[pair])
+            births[new] += self.alpha * (target[i] - births[new])
         if births:
+            newborn = np.stack([np.frombuffer(key, states.dtype) for key in born])
+            ids = self.index[a].add(newborn)
             self.values[a] = np.append(values, births)
-            self.index[a].add(np.stack([np.frombuffer(key, states.dtype) for key in born]))
+            if self._states is not None:
+                self._found[a] = self._found[a].joined_by(self._states, newborn, ids)
 
-    def _recall(self, states, a):
-        """Q of (state, a) for each state (B,), and the stored pair that it is, or -1 (B,)."""
-        values = self.values[a]
-        if not len(values):
-            return np.zeros(len(states)), np.full(len(states), -1)
-        distance, pair = self.index[a].query(states, self.k, n_first=len(values))
-        there = pair >= 0
-        mean = np.where(there, values[pair], 0.0).sum(1) / there.sum(1)
-        met = distance[:, 0] <= SAME
-        return np.where(met, values[pair[:, 0]], mean), np.where(met, pair[:, 0], -1)
+    def _neighbours(self, states):
+        """Of each action the Neighbours of the states.
+
+        Planning asks for the states that learning has just looked up as the next ones, and learning again for those
+        of planning. So the last answer is kept, and pairs that are born join it.
+        """
+        states = np.asarray(states, np.float32)
+        if not np.array_equal(states, self._states):
+            self._found = _neighbours(self.index, self.values, states, self.k)
+            self._states = states.copy()
+        return self._found
 
     def checkpoint(self):
-        """Remember today's Q: for each action the number of pairs, and the values that changed since the last time."""
-        entry = []
-        for a, values in enumerate(self.values):
-            before = np.full(len(values), np.nan)
-            before[:len(self._logged[a])] = self._logged[a]
-            changed = np.flatnonzero(before != values)
-            entry.append((len(values), changed.astype(np.int32), values[changed]))
-            self._logged[a] = values.copy()
-        self.log.append(entry)
+        """Remember today's Q."""
+        self.log.take(self.values)
 
     def at(self, checkpoint):
-        """The store as it was at a checkpoint (0, 1, ...); shares the states with this one and cannot learn.
-
-        Pairs are only ever added, so those of the past are the first ones; a later pair is not available (N/A).
-        """
-        if not 0 <= checkpoint < len(self.log):
-            there = f"0..{len(self.log) - 1}" if self.log else "one to be there"
-            raise ValueError(f"checkpoint: expected {there}, found {checkpoint}")
-        past = object.__new__(NNQL)
-        past.__dict__ = {**self.__dict__, "values": [], "learn": _past_is_past, "checkpoint": _past_is_past}
-        for a in range(len(self.index)):
-            values = np.empty(self.log[checkpoint][a][0])
-            for entry in self.log[:checkpoint + 1]:
-                _, changed, value = entry[a]
-                values[changed] = value
-            past.values.append(values)
-        return past
+        """Q as it was at a checkpoint (0, 1, ...), to ask and not to teach; shares the states with this store."""
+        return PastQ(self.index, self.log.values_at(checkpoint), self.k)
 
     def save(self, path, made_by):
         """Write states, values and checkpoints, and what made them."""
-        arrays = {}
-        for a, index in enumerate(self.index):
-            entries = [entry[a] for entry in self.log]
-            arrays |= {f"states{a}": index.points, f"values{a}": self.values[a],
-                       f"born{a}": np.array([born for born, _, _ in entries], int),
-                       f"n_changed{a}": np.array([len(changed) for _, changed, _ in entries], int),
-                       f"changed{a}": np.concatenate([np.empty(0, np.int32), *(c for _, c, _ in entries)]),
-                       f"changed_to{a}": np.concatenate([np.empty(0), *(v for _, _, v in entries)])}
-        save_arrays(path, made_by, **arrays)
+        states = {f"states{a}": index.points for a, index in enumerate(self.index)}
+        values = {f"values{a}": values for a, values in enumerate(self.values)}
+        save_arrays(path, made_by, **states, **values, **self.log.to_arrays())
 
     @classmethod
     def load(cls, path, **settings):
         """The store of a file of `save`, and what made it."""
         arrays, made_by = load_arrays(path)
-        kinds = ("states", "values", "born", "n_changed", "changed", "changed_to")
+        kinds = ("states", "values", *Checkpoints.NAMES)
         n_actions = len(arrays) // len(kinds)
         if not n_actions or set(arrays) != {f"{kind}{a}" for kind in kinds for a in range(n_actions)}:
             raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
         store = cls(arrays["states0"].shape[1], n_actions, **settings)
-        entries = []
-        for a in range(n_actions):
-            if len(arrays[f"states{a}"]):
-                store.index[a].add(arrays[f"states{a}"])
-            store.values[a] = arrays[f"values{a}"]
-            cuts = np.cumsum(arrays[f"n_changed{a}"])[:-1]
-            entries.append(zip(arrays[f"born{a}"].tolist(), np.split(arrays[f"changed{a}"], cuts),
-                               np.split(arrays[f"changed_to{a}"], cuts), strict=False))
-        store.log = [list(entry) for entry in zip(*entries, strict=False)] if len(arrays["born0"]) else []
-        store._logged = [past.copy() for past in store.at(len(store.log) - 1).values] if store.log else store._logged
+        for a, index in enumerate(store.index):
+            index.add(arrays[f"states{a}"])
+        store.values = [arrays[f"values{a}"] for a in range(n_actions)]
+        store.log = Checkpoints.from_arrays(arrays, n_actions)
         return store, made_by
 
 
-def _past_is_past(*_):
-    raise ValueError("learn: expected the present store, found one at a past checkpoint")
+@dataclass(frozen=True)
+class PastQ:
+    """Q at a checkpoint: of each action the values of the pairs that were there, and the index of all pairs since."""
+
+    index: list
+    values: list
+    k: int
+
+    def q_values(self, states):
+        """Equation 1: states (B, K) -> (B, A)."""
+        return _q_values(_neighbours(self.index, self.values, states, self.k), self.values)
+
+
+def _neighbours(index, values, states, k):
+    """Of each action the Neighbours of the states among as many pairs as there are values."""
+    return [Neighbours.find(of_action, states, k, len(v)) for of_action, v in zip(index, values, strict=True)]
+
+
+def _q_values(found, values):
+    return np.stack([near.mean(v) for near, v in zip(found, values, strict=True)], 1)

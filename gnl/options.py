@@ -19,20 +19,20 @@ import numpy as np
 from .robot import N_ACTIONS
 
 K_NEIGHBOURS = 100
-MOST_STEPS = 7000  # of one action; twice as many take four times as long and teach no more
+MOST_STEPS = 20_000  # twice as many take four times as long and teach no more
 FIRST_VIEWS = 2000  # over which a mean is taken
 AT_ONCE = 512  # queries whose likeness to all that is remembered is held in memory
 
 
 class Experience:
-    """Every step of some episodes: states, actions and rewards, one after the other."""
+    """The first steps of some episodes: states, actions and rewards, one after the other."""
 
     def __init__(self):
         self.steps, self.seen, self.actions, self.states, self.rewards = [], [], [], [], []
 
     def watch(self, step, seen, actions, states, places, **_):
         """Remember a look of robots side by side; for `episode.run`."""
-        if step:
+        if step and sum(map(len, self.actions)) < MOST_STEPS:
             self.steps.append(np.full(len(actions), step))
             self.seen.append(seen)
             self.actions.append(actions)
@@ -55,7 +55,7 @@ class Options:
         first, length = seen[steps == 1][:FIRST_VIEWS], sequences.shape[1]
         self.k, self.seen, self.ahead = k, [], []
         for a in range(N_ACTIONS):
-            rows = np.flatnonzero(actions == a)[:MOST_STEPS]
+            rows = np.flatnonzero(actions == a)
             near, reward = nearest(states[rows], seen[rows], k), rewards[rows] / length
             ahead = reward  # of each remembered step: its reward and V of the state after it, with more and more to go
             for _ in range(length - 1 if len(rows) else 0):

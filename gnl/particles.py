@@ -80,10 +80,10 @@ class ParticleFilter:
         B, M = self.weight.shape
         start = self.rng.random(B)
         for b in range(B):
-            total = np.cumsum(self.weight[b], dtype=np.float64)
-            mark = np.ceil(total * (M / total[-1]) - start[b]).astype(int)
+            total = self.weight[b].astype(float).cumsum()
+            mark = np.ceil(total * (M / total[-1]) - start[b]).astype(int)  # copies of particles up to this one
             mark[-1] = M  # rounding must not lose the last one
-            drawn = np.repeat(np.arange(M), mark - np.append(0, mark[:-1]))
+            drawn = np.bincount(mark)[:M].cumsum()  # copy j is of the particle before which lie all marks up to j
             for of_particle in (self.x, self.y, self.theta, self.place):
-                of_particle[b] = of_particle[b][drawn]
+                of_particle[b] = of_particle[b].take(drawn)
         self.weight = np.full((B, M), 1 / M, np.float32)

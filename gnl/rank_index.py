@@ -2,27 +2,29 @@
 
 The state of nearest-neighbour Q-learning is a ranking of K places, written as 1/rank: every vector is a
 permutation of (1, 1/2, ..., 1/K). So all have one length, the nearest is the one with the greatest dot
-product, and two are near only if their first places agree, or nearly so. The index keeps a bucket of vectors
-for each first place and opens only those that can hold a neighbour (`reach_of`). A robot that faces one more
-bare wall ranks the places as it did at the last one: equal vectors share one row.
+product, and two are near only if their first places agree, or nearly so. The index keeps vectors on shelves,
+one for each first place, and looks only at those that can hold a neighbour (`most_beyond`). New vectors lie on
+a heap until there are enough to put on the shelves. A robot that faces one more bare wall ranks the places as
+it did at the last one: equal vectors share one row.
 
 symbol     shape     meaning
-points     (n, K)    all stored vectors in order of birth, float32; a point's id is its row
+points     (n, K)    all stored vectors in order of birth, float32; a point's id is its number
+rows       (m, K)    the different ones: shelf after shelf, each by age, then the heap by age
 queries    (B, K)    vectors whose neighbours are wanted
-depth      int       open the buckets of a query's first `depth` places
 k          int       neighbours wanted
 n_first    int       look at the first n_first points only: the store as it was when it held so many
 """
 
 from bisect import bisect_left
-from functools import cache
 
 import numpy as np
 
-from .kdtree import check_count, check_points, lengths, pack_answers
+from .kdtree import check_count, check_points, lengths
 
-SMALL = 2000  # points; up to here one bucket for all is faster than one per first place
-DEPTHS = (1, 4, 16)  # tried in turn before all buckets are opened; any choice gives the same answers
+# Any choice gives the same answers.
+SMALL = 4000  # rows; until there are more, all on the heap, it is fastest to look at every one
+HEAP = 500  # rows; so many go to the shelves together
+DEEP = 8  # shelves; a query that is unsure after so many looks at every row
 
 
 class RankIndex:
@@ -31,51 +33,44 @@ class RankIndex:
     def __init__(self, n_places):
         n_places = check_count("n_places", n_places, 1)
         self._values = (1 / np.arange(1, n_places + 1)).astype(np.float32)  # of every vector, in some order
-        self._buckets = {None: _Bucket(n_places)}  # by first place; a small store has this one for all
-        self._homes = []  # of each point, its bucket and row
+        self._most_beyond = most_beyond(n_places).tolist()
+        # Summed in any order, a float32 dot product of K positive terms is off by at most K * 2^-24 of itself, and it
+        # is at most pi^2 / 6. Twice that, since two are compared, and twice again, for the bound is rounded too.
+        self._tolerance = 4 * n_places * 2 ** -24 * np.pi ** 2 / 6
+        self._rows = np.empty((2, n_places), np.float32)  # doubled when full: the first m count
+        self._shelves = [0] * (n_places + 1)  # vectors of first place p: rows shelves[p] to shelves[p + 1]
+        self._oldest = []  # of each row, the oldest point that is this vector
+        self._row_of = []  # of each point, its row
         self._copies = {}  # oldest of several equal points -> all of them, ascending
-        # Summed in any order, a float32 dot product of K positive terms is off by at most K * 2^-24 of
-        # itself, and it is at most pi^2 / 6. Twice that, since it is compared with another one.
-        self._tolerance = 2 * n_places * 2 ** -24 * np.pi ** 2 / 6
+        self._known = {}  # hash of a vector -> oldest points of vectors with this hash: nearly always one
 
     def __len__(self):
-        return len(self._homes)
+        return len(self._row_of)
 
     @property
     def points(self):
-        """All stored vectors, (n, K) float32, in order of birth; put together anew at each call."""
-        points = np.empty((len(self), len(self._values)), np.float32)
-        for i, (bucket, row) in enumerate(self._homes):
-            points[i] = bucket.rows[row]
-        return points
+        """All stored vectors, (n, K) float32, in order of birth; a copy."""
+        return self._rows[self._row_of]
 
     def add(self, points):
         """Store points (n, K); returns their ids (n,), counted on from the points already there."""
         points = self._check_ranks(points)
         ids = np.arange(len(self), len(self) + len(points))
         for new, vector in zip(ids.tolist(), points, strict=True):
-            if new == SMALL:
-                self._deal_out()
-            self._store(new, vector)
+            oldest = self._find(vector)
+            if oldest >= 0:
+                self._copies.setdefault(oldest, [oldest]).append(new)
+                self._row_of.append(self._row_of[oldest])
+            else:
+                self._put_on_heap(vector, new)
+        if len(self._oldest) > SMALL and len(self._oldest) - self._shelves[-1] >= HEAP:
+            self._tidy_up()
         return ids
 
-    def _store(self, new, vector):
-        first = None if None in self._buckets else int(vector.argmax())
-        if first not in self._buckets:
-            self._buckets[first] = _Bucket(len(vector))
-        bucket = self._buckets[first]
-        row = bucket.add(vector, new)
-        oldest = bucket.ids[row]
-        if oldest != new:
-            self._copies.setdefault(oldest, [oldest]).append(new)
-        self._homes.append((bucket, row))
-
-    def _deal_out(self):
-        """From one bucket for all to one per first place."""
-        points = self.points
-        self._buckets, self._homes, self._copies = {}, [], {}
-        for i, vector in enumerate(points):
-            self._store(i, vector)
+    def find(self, points):
+        """The oldest stored point that equals each of points (B, K), or -1: (B,)."""
+        points = check_points(points, len(self._values))
+        return np.array([self._find(vector) for vector in points], int)
 
     def query(self, points, k, n_first=None):
         """The k nearest stored points of each query, nearest first, ties to the older point.
@@ -83,65 +78,121 @@ class RankIndex:
         points  : (B, K) queries
         returns : distances (B, k) float64, ids (B, k); inf and -1 where there are fewer than k points
 
-        Equals brute force: a query looks deeper until its k-th best is nearer than all it has not looked at.
+        Equals brute force: a query looks on until its k-th best is nearer than all it has not looked at.
         """
         queries = self._check_ranks(points)
         k = check_count("k", k, 1)
         n_first = len(self) if n_first is None else check_count("n_first", n_first, 0, len(self))
-        distances, ids = np.empty((len(queries), k)), np.empty((len(queries), k), int)
-        unsure = np.arange(len(queries))
-        everything = len(self._values)
-        for depth in (everything,) if None in self._buckets else (*DEPTHS, everything):
-            distances[unsure], ids[unsure] = self._look(queries[unsure], depth, k, n_first)
-            unsure = unsure[distances[unsure, -1] >= reach_of(depth)]  # equal: there may be an older point
-            if not len(unsure):
-                break
+        if self._shelves[-1]:
+            who, rows, unsure = self._look_on_shelves(queries, k, n_first)
+        else:
+            who, rows, unsure = np.empty(0, int), np.empty(0, int), np.arange(len(queries))
+        if len(unsure):
+            others, their_rows = self._look_at_all(queries[unsure], k, n_first)
+            who, rows = np.append(who, unsure[others]), np.append(rows, their_rows)
+        return self._settle(queries, who, rows, k, n_first)
+
+    def _look_on_shelves(self, queries, k, n_first):
+        """Pairs of a query and a row that may be among its k nearest; and the queries that need to see more."""
+        heap = slice(self._shelves[-1], bisect_left(self._oldest, n_first, self._shelves[-1]))
+        on_heap = products(queries, self._rows[heap])  # of all queries together: much faster than one by one
+        places = self._first_places(queries).tolist()
+        who, rows, unsure = [], [], []
+        for i, query in enumerate(zip(queries, places, on_heap, strict=True)):
+            near = self._look(k, self._pieces(*query, n_first))
+            if near is None:
+                unsure.append(i)
+            else:
+                who += [i] * len(near)
+                rows += near.tolist()
+        return np.array(who, int), np.array(rows, int), np.array(unsure, int)
+
+    def _pieces(self, query, places, on_heap, n_first):
+        """Where a query (K,) looks: first row of a piece, its dot products, the most that any row beyond can have."""
+        if len(on_heap):
+            yield self._shelves[-1], on_heap, self._most_beyond[0]
+        for depth, place in enumerate(places, 1):
+            start = self._shelves[place]
+            end = bisect_left(self._oldest, n_first, start, self._shelves[place + 1])
+            yield start, self._rows[start:end] @ query, self._most_beyond[depth]
+
+    def _look(self, k, pieces):
+        """Rows whose dot product is among the k greatest, or too close to say; None if there may be more beyond."""
+        best, seen = np.full(k, -1, np.float32), []  # -1: less than any
+        for start, dots, beyond in pieces:
+            best = np.concatenate([best, dots])
+            best.partition(-k)  # the k greatest come last, and of them the least first
+            best = best[-k:]
+            seen.append((start, dots))
+            enough = best[0] - self._tolerance
+            if enough > beyond:
+                return np.concatenate([start + (dots >= max(enough, 0)).nonzero()[0] for start, dots in seen])
+        return None
+
+    def _look_at_all(self, queries, k, n_first):
+        """Pairs of a query and a row that may be among its k nearest."""
+        dots = products(queries, self._rows[:len(self._oldest)])
+        if n_first < len(self):
+            dots[:, np.array(self._oldest) >= n_first] = -1
+        m = dots.shape[1]
+        enough = np.partition(dots, m - k)[:, m - k] - self._tolerance if m > k else np.zeros(len(dots))
+        return (dots >= enough.clip(0)[:, None]).nonzero()
+
+    def _settle(self, queries, who, rows, k, n_first):
+        """Of the rows found for each query, and the copies of each, the k best points by exact distance."""
+        distances, ids = np.full((len(queries), k), np.inf), np.full((len(queries), k), -1)
+        if not len(rows):
+            return distances, ids
+        exact = lengths(self._rows[rows] - queries[who].astype(float))
+        points = [self._oldest[row] for row in rows.tolist()]
+        if self._copies:
+            points = [self._copies.get(oldest, [oldest])[:k] for oldest in points]
+            copies = [len(equal) for equal in points]
+            who, exact, points = who.repeat(copies), exact.repeat(copies), [i for equal in points for i in equal]
+        points = np.array(points)
+
+        order = np.lexsort((points, exact, who))  # query by query, the nearest first, the older of equals first
+        order = order[points[order] < n_first]
+        who, exact, points = who[order], exact[order], points[order]
+        column = np.arange(len(who)) - who.searchsorted(who)
+        best = column < k
+        distances[who[best], column[best]], ids[who[best], column[best]] = exact[best], points[best]
         return distances, ids
 
-    def _look(self, queries, depth, k, n_first):
-        """The k nearest points in the buckets of each query's first `depth` places."""
-        who, ids = [], []  # pairs of a query and a point that may be among its k nearest
-        for group, buckets in self._groups(queries, depth):
-            Q = queries[group].T
-            dots, owners = [], []
-            for bucket in buckets:
-                n = bisect_left(bucket.ids, n_first)
-                dots.append(bucket.rows[:n] @ Q)
-                owners += bucket.ids[:n]
-            dots = np.concatenate(dots).T  # (queries in the group, rows in the buckets)
-            n = len(owners)
-            floor = np.partition(dots, n - k, axis=1)[:, n - k, None] - self._tolerance if n > k else 0
-            rows, columns = (dots >= floor).nonzero()
-            who += group[rows].tolist()
-            ids += [owners[column] for column in columns.tolist()]
-        return self._settle(queries, who, ids, k, n_first)
+    def _find(self, vector):
+        key = vector.tobytes()
+        for oldest in self._known.get(hash(key), ()):
+            if self._rows[self._row_of[oldest]].tobytes() == key:
+                return oldest
+        return -1
 
-    def _groups(self, queries, depth):
-        """Who opens which buckets: queries with one first place share the work, and at full depth all do."""
-        if depth == len(self._values):
-            return [(np.arange(len(queries)), self._buckets.values())]
-        ranking = np.argsort(-queries, axis=1)[:, :depth] if depth > 1 else queries.argmax(axis=1)[:, None]
-        groups = []
-        for first in set(ranking[:, 0].tolist()):
-            group = (ranking[:, 0] == first).nonzero()[0]
-            places = self._buckets.keys() & set(ranking[group].ravel().tolist())
-            if places:
-                groups.append((group, [self._buckets[place] for place in places]))
-        return groups
+    def _put_on_heap(self, vector, new):
+        m = len(self._oldest)
+        if m == len(self._rows):
+            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
+        self._rows[m] = vector
+        self._row_of.append(m)
+        self._oldest.append(new)
+        self._known.setdefault(hash(vector.tobytes()), []).append(new)
 
-    def _settle(self, queries, who, ids, k, n_first):
-        """Of the pairs (query, point) and the point's copies, the k best of each query by exact distance."""
-        answers = [[] for _ in queries]
-        if ids:
-            vectors = np.stack([bucket.rows[row] for bucket, row in map(self._homes.__getitem__, ids)])
-            exact = lengths(vectors - queries[who].astype(float))
-            for query, distance, i in zip(who, exact.tolist(), ids, strict=True):
-                copies = self._copies.get(i, [i])[:k]
-                answers[query] += [(distance, copy) for copy in copies if copy < n_first]
-        return pack_answers([sorted(pairs)[:k] for pairs in answers], k)
+    def _tidy_up(self):
+        """From the heap to the shelves."""
+        m = len(self._oldest)
+        first = self._rows[:m].argmax(axis=1)
+        order = first.argsort(kind="stable")  # the older stay before the younger
+        self._rows[:m] = self._rows[order]
+        self._oldest = np.array(self._oldest)[order].tolist()
+        self._row_of = order.argsort()[self._row_of].tolist()
+        self._shelves = first[order].searchsorted(np.arange(len(self._shelves))).tolist()
+
+    def _first_places(self, queries):
+        """The first DEEP places of each query, best first: (B, DEEP)."""
+        depth = min(DEEP, len(self._values))
+        who, places = (queries >= self._values[depth - 1]).nonzero()
+        return places[np.lexsort((-queries[who, places], who))].reshape(-1, depth)
 
     def _check_ranks(self, points):
-        """The points as float32 (n, K), or a ValueError if they are not reciprocal ranks."""
+        """The points as float32 (n, K), or a ValueError if they are no reciprocal ranks."""
         points = check_points(points, len(self._values))
         wrong = (np.sort(points, axis=1)[:, ::-1] != self._values).any(axis=1)
         if wrong.any():
@@ -150,37 +201,20 @@ class RankIndex:
         return points
 
 
-@cache
-def reach_of(depth):
-    """No vector whose first place is not among a query's first `depth` places is nearer to it than this.
+def products(queries, rows):
+    """Dot products of all with all: (B, m). BLAS is nearly twice as fast this way round as with queries @ rows.T."""
+    return (rows @ queries.T).T.copy()
 
-        |q - s|^2 = 2 (sum_i 1/i^2 - q.s)  >=  2 (1/2^2 + 1/3^2 + ... + 1/r^2),   r = depth + 1
+
+def most_beyond(n_places):
+    """Greatest dot product of a query with a vector whose first place is none of the query's first d: d = 0..K.
+
+        q.s  <=  1 + sum_{i > r} 1/i^2,   r = d + 1
 
     Let s have its 1 where q has 1/r. By the rearrangement inequality q.s is greatest if all the rest pairs
     off in order: 1 with 1/2, 1/2 with 1/3, ..., 1/(r-1) with 1/r, and from there on 1/i with 1/i. So q.s is
     at most 1/r + sum_{i<r} 1/(i (i+1)) + sum_{i>r} 1/i^2 = 1 + sum_{i>r} 1/i^2, as the first sum telescopes
-    to 1 - 1/r. The less q has where s has its 1, the farther they are apart.
+    to 1 - 1/r. The less q has where s has its 1, the less they have in common. Beyond all K places is nothing.
     """
-    return np.sqrt(2 * (1 / np.arange(2, depth + 2) ** 2).sum()) * (1 - 1e-6)  # less: float32 rounds 1/i
-
-
-class _Bucket:
-    """Vectors that all differ, in contiguous rows, oldest first; the array doubles when full."""
-
-    def __init__(self, n_places):
-        self.rows = np.empty((2, n_places), np.float32)
-        self.ids = []  # of each row, the oldest point that is this vector
-        self._row_of = {}  # hash of a vector -> its row
-
-    def add(self, vector, new):
-        """The row of the vector (K,): the one that an equal vector has, or else a new one."""
-        size = len(self.ids)
-        row = self._row_of.setdefault(hash(vector.tobytes()), size)
-        if row < size and (self.rows[row] == vector).all():
-            return row
-        if size == len(self.rows):
-            rows = np.empty((2 * size, len(vector)), np.float32)  # reserve takes no memory until written to
-            rows[:size], self.rows = self.rows, rows
-        self.rows[size] = vector
-        self.ids.append(new)
-        return size
+    squares = 1 / np.arange(1, n_places + 1) ** 2
+    return np.append(1 + squares.sum() - squares.cumsum(), -np.inf)

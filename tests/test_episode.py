@@ -221,7 +221,7 @@ def test_the_rules_of_an_episode_are_those_that_are_given():
     assert pooled[0].sum() > 2 * pooled[5].sum()
 
 
-@pytest.mark.parametrize("n", [1, 31, 32, 33, 100])
+@pytest.mark.parametrize("n", [1, 63, 64, 65, 200])
 def test_groups_side_by_side_are_as_equal_as_can_be(n):
     groups = side_by_side(starts(n))
     np.testing.assert_array_equal(np.concatenate(groups), starts(n))
@@ -235,7 +235,7 @@ def test_training_explores_first_then_keeps_checkpoints_and_says_how_far_it_is()
     learner = train_nnql(Sense(knows), Glide(), GRID, starts(100), 0, checkpoint_every=40,
                          progress=lambda share, right: told.append((share, right)))
     assert len(learner.log) == 2  # after 40 and 80 episodes
-    assert [share for share, _ in told] == [0.25, 0.5, 0.75, 1.0]
+    assert [share for share, _ in told] == [0.5, 1.0]
     assert {right for _, right in told} == {1.0}
     stored = sum(len(values) for values in learner.values)
     assert 0 < stored <= 100 * episode.LENGTH

@@ -60,6 +60,19 @@ def test_first_stored_point_is_found_again():
     assert (distances[0, 0], ids[0, 0]) == (0, 0)
 
 
+@pytest.mark.parametrize("draw", [gaussian, lattice])
+def test_a_point_is_found_by_its_oldest_equal(draw):
+    rng = np.random.default_rng(5)
+    points, tree = draw(rng, 400, 4), KDTree(4)
+    assert tree.find(points).tolist() == [-1] * 400
+    tree.add(points[:100])
+    tree.add(points[100:300])
+    plain = [[i for i, point in enumerate(points[:300]) if (point == wanted).all()] for wanted in points]
+    assert tree.find(points).tolist() == [equal[0] if equal else -1 for equal in plain]
+    assert -1 in tree.find(points)
+    assert tree.find(points[:0]).tolist() == []
+
+
 @pytest.mark.parametrize("n_first", [0, 1, 40, 200])
 def test_an_older_state_is_a_fresh_tree_of_the_first_points(n_first):
     rng = np.random.default_rng(2)

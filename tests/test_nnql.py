@@ -1,7 +1,7 @@
-"""The store is a dictionary with brute force behind it, learns what value iteration finds, and forgets nothing."""
+"""The store is a dictionary with brute force behind it and learns what value iteration finds."""
 
 import copy
-import pickle
+import itertools
 
 import naive_learning
 import numpy as np
@@ -121,6 +121,22 @@ def test_a_store_is_a_dictionary_with_brute_force(index, seed, k):
         np.testing.assert_allclose(values, list(pairs.values()), atol=1e-12)
 
 
+@INDEXES
+@pytest.mark.parametrize("n_places", [4, K])
+def test_what_was_looked_up_is_right_after_pairs_were_born(index, n_places):
+    rng, store = np.random.default_rng(0), NNQL(n_places, A, index=index)
+    states = random_states(rng, 8, n_places)
+    for step in range(60):
+        next_states = random_states(rng, 8, n_places)  # of four places there are few states: many come back
+        next_states[:4] = states[[1, 2, 3, 3]]  # pairs of these are born in this very step
+        done = np.full(8, step % 5 == 4)
+        store.learn(states, rng.integers(A, size=8), rng.choice([-1.0, 1.0], 8), next_states, done)
+        anew = copy.deepcopy(store)
+        anew._states = None
+        np.testing.assert_array_equal(store.q_values(next_states), anew.q_values(next_states))
+        states = next_states
+
+
 def test_what_was_lived_often_becomes_what_value_iteration_finds():
     """A corridor of five states; to the left is -1 a step, the right end is worth 1, staying costs nothing."""
     n, rng = 5, np.random.default_rng(0)
@@ -137,101 +153,22 @@ def test_what_was_lived_often_becomes_what_value_iteration_finds():
     assert (Q[:n - 1].argmax(1) == 1).all()
 
 
-def snapshots(store, n=5):
-    """Five checkpoints of a life, and a full copy of the store at each."""
-    kept = []
-    for part in range(n):
-        if part != 3:  # once nothing happens between two checkpoints
-            for step in transitions(part, 8, n_different=40 * (part + 1)):
-                store.learn(*step)
-        store.checkpoint()
-        kept.append(copy.deepcopy(store))
-    return kept
-
-
-@INDEXES
-def test_the_store_at_a_checkpoint_is_a_snapshot_taken_then(index):
-    store = NNQL(K, A, index=index)
-    store.checkpoint()  # the first one has nothing to remember
-    kept = [copy.deepcopy(store), *snapshots(store)]
-    for step in transitions(77, 10):
-        store.learn(*step)
-    asked = np.concatenate([random_states(np.random.default_rng(5), 20), *(step[0] for step in transitions(2, 3))])
-    now = store.q_values(asked)
-    for i, snapshot in enumerate(kept):
-        past = store.at(i)
-        for ours, theirs in zip(past.values, snapshot.values, strict=True):
-            np.testing.assert_array_equal(ours, theirs)
-        np.testing.assert_array_equal(past.q_values(asked), snapshot.q_values(asked))
-    assert abs(past.q_values(asked) - now).max() > 0
-    np.testing.assert_array_equal(store.q_values(asked), now)
-
-
-def test_the_past_cannot_learn():
-    store = lived(3)
-    store.checkpoint()
-    before = pickle.dumps(store.values)
-    with pytest.raises(ValueError, match="learn: expected the present store, found one at a past checkpoint"):
-        store.at(0).learn(*next(transitions(1, 1)))
-    assert pickle.dumps(store.values) == before
-
-
-@pytest.mark.parametrize("checkpoint", [-1, 2])
-def test_a_checkpoint_that_is_none_is_refused(checkpoint):
-    store = lived(1)
-    store.checkpoint()
-    store.checkpoint()
-    with pytest.raises(ValueError, match=rf"checkpoint: expected 0\.\.1, found {checkpoint}"):
-        store.at(checkpoint)
-
-
-def test_checkpoints_cost_little_beside_the_states():
-    """A checkpoint logs a birth count and the values that changed: 12 bytes each, a state of 360 places has 1440."""
-    rng, store = np.random.default_rng(0), NNQL(360, A)
-    known = random_states(rng, 600, 360)
-    for step in range(100):
-        which = rng.integers(len(known), size=32)
-        store.learn(known[which], rng.integers(A, size=32), np.ones(32), known[which], np.ones(32, bool))
-        if step % 10 == 9:
-            store.checkpoint()
-    log = sum(changed.nbytes + values.nbytes for entry in store.log for _, changed, values in entry)
-    states = sum(len(values) for values in store.values) * 360 * 4
-    changes = sum(len(changed) for entry in store.log for _, changed, _ in entry)
-    assert log == 12 * changes
-    assert log < 0.05 * states  # measured: 0.014
-
-
-def test_a_checkpoint_without_news_logs_nothing():
-    store = lived(5)
-    store.checkpoint()
-    store.checkpoint()
-    assert all(len(changed) == len(values) == 0 for _, changed, values in store.log[1])
-
-
 def test_both_indexes_give_the_same_values():
     asked = random_states(np.random.default_rng(5), 40)
     np.testing.assert_array_equal(lived(40).q_values(asked), lived(40, index=KDTree).q_values(asked))
 
 
-@pytest.mark.parametrize("n_checkpoints", [0, 3])
-def test_a_saved_store_is_read_back_with_its_past_and_goes_on_as_the_other(tmp_path, n_checkpoints):
-    store = NNQL(K, A, k=3, alpha=0.2)
-    snapshots(store, n_checkpoints)
-    for step in transitions(9, 3):
-        store.learn(*step)
-    store.save(tmp_path / "nnql.npz", {"home": 800})
-    again, made_by = NNQL.load(tmp_path / "nnql.npz", k=3, alpha=0.2)
-    assert made_by == {"home": 800}
-    for both in (store, again):
-        for step in transitions(10, 3):
-            both.learn(*step)
-        both.checkpoint()
-    assert [len(changed) for _, changed, _ in again.log[-1]] == [len(changed) for _, changed, _ in store.log[-1]]
-    asked = random_states(np.random.default_rng(5), 40)
-    assert len(again.log) == n_checkpoints + 1
-    for i in range(n_checkpoints + 1):
-        np.testing.assert_array_equal(again.at(i).q_values(asked), store.at(i).q_values(asked))
-    np.testing.assert_array_equal(again.q_values(asked), store.q_values(asked))
+def test_what_robots_do_in_lockstep_is_searched_for_once(monkeypatch):
+    store, searched = lived(20), []
+    for index in store.index:
+        query = index.query
+        monkeypatch.setattr(index, "query", lambda *args, query=query: searched.append(len(args[0])) or query(*args))
+    rng = np.random.default_rng(3)
+    looks = [random_states(rng, 8) for _ in range(5)]
+    for step, (states, next_states) in enumerate(itertools.pairwise(looks)):
+        store.q_values(states)  # planning
+        store.learn(states, rng.integers(A, size=8), np.ones(8), next_states, np.full(8, step == 3))
+    assert searched == [8] * 4 * A  # the last of five looks needs no value
 
 
 def test_epsilon_is_that_of_the_paper():

@@ -39,6 +39,13 @@ def test_an_experience_is_the_steps_and_how_well_the_true_place_ranked_after_eac
     np.testing.assert_array_equal(states, [b, a])
 
 
+def test_what_is_enough_is_enough(monkeypatch):
+    monkeypatch.setattr(options, "MOST_STEPS", 5)
+    a = ranking(3, 1)
+    steps, seen, *_ = lived(*[(a, 0, a, 3)] * 9).arrays()
+    assert len(steps) == len(seen) == 5
+
+
 def test_a_small_case_by_hand():
     # Left leads from a to b (true place second, 1/2) and from b to c (first, 1); from c back to a (third, 1/3).
     a, b, c = ranking(1, 2, 3), ranking(11, 12, 13), ranking(21, 22, 23)

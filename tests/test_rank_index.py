@@ -6,7 +6,7 @@ from naive import nearest
 
 from gnl import rank_index
 from gnl.kdtree import KDTree
-from gnl.rank_index import RankIndex, reach_of
+from gnl.rank_index import RankIndex, most_beyond
 
 
 def reciprocal_ranks(scores):
@@ -33,10 +33,11 @@ def index_of(points):
     return index
 
 
-@pytest.fixture(params=[0, 100, 2000], ids="small={}".format)
+@pytest.fixture(params=[(0, 0), (0, 40), (100, 40), (2000, 0)], ids="{0[0]}+{0[1]}".format)
 def small(request, monkeypatch):
-    """The size up to which the store is one bucket: dealt out from the start, on the way, and never."""
-    monkeypatch.setattr(rank_index, "SMALL", request.param)
+    """Rows on the heap before any goes to the shelves, and then: none, some, some later, all of them."""
+    for name, value in zip(("SMALL", "HEAP"), request.param, strict=True):
+        monkeypatch.setattr(rank_index, name, value)
 
 
 @pytest.mark.parametrize("k", [1, 4, 16, 500])
@@ -80,7 +81,10 @@ def test_an_older_state_is_a_fresh_index_of_the_first_points(draw, n_first, smal
     rng = np.random.default_rng(2)
     points, queries = draw(rng, 300, 30), random(rng, 10, 30)
     queries = np.concatenate([queries, points[-5:]])
-    now, then = index_of(points).query(queries, 5, n_first), index_of(points[:n_first]).query(queries, 5)
+    index = index_of(points[:25])
+    for part in np.split(points[25:], 11):
+        index.add(part)
+    now, then = index.query(queries, 5, n_first), index_of(points[:n_first]).query(queries, 5)
     for ours, theirs in zip(now, then, strict=True):
         np.testing.assert_array_equal(ours, theirs)
 
@@ -104,7 +108,7 @@ def test_equal_points_are_found_oldest_first(small):
 
 def test_equal_points_share_one_row(small):
     points = duplicated(np.random.default_rng(5), 300, 50)
-    assert sum(len(bucket.ids) for bucket in index_of(points)._buckets.values()) == 9
+    assert len(index_of(points)._oldest) == 9
 
 
 def test_vectors_of_equal_hash_stay_apart(small, monkeypatch):
@@ -113,31 +117,62 @@ def test_vectors_of_equal_hash_stay_apart(small, monkeypatch):
     points = np.concatenate([random(rng, 100, 6), duplicated(rng, 50, 6)])
     np.testing.assert_array_equal(index_of(points).points, points)
     np.testing.assert_array_equal(index_of(points).query(points, 6)[1], nearest(points, points, 6)[1])
+    np.testing.assert_array_equal(index_of(points).find(points), nearest(points, points, 1)[1][:, 0])
 
 
-def test_no_vector_beyond_a_depth_is_nearer_than_its_reach():
-    """All 720 rankings of six places against one: the bound holds, and the nearest vector attains it."""
+@pytest.mark.parametrize("draw", [random, duplicated])
+def test_a_point_is_found_by_its_oldest_equal(draw, small):
+    rng = np.random.default_rng(9)
+    points = np.concatenate([draw(rng, 150, 20), draw(rng, 50, 20)])
+    index = index_of(points[:90])
+    index.add(points[90:150])
+    plain = [[i for i, point in enumerate(points[:150]) if (point == wanted).all()] for wanted in points]
+    assert index.find(points).tolist() == [equal[0] if equal else -1 for equal in plain]
+    assert -1 in index.find(points)
+    assert RankIndex(20).find(points).tolist() == [-1] * 200
+
+
+def test_no_vector_beyond_has_a_greater_dot_product():
+    """All 720 rankings of six places against one: the bound holds, and one of them attains it."""
     everyone = np.array(np.meshgrid(*[np.arange(6)] * 6)).reshape(6, -1).T
     everyone = everyone[[len(set(ranks)) == 6 for ranks in everyone.tolist()]]
-    points = 1 / (1 + everyone)
-    query = 1 / np.arange(1, 7)
-    distances = np.sqrt(((points - query) ** 2).sum(axis=1))
-    for depth in range(1, 6):
-        nearest_beyond = distances[points.argmax(axis=1) >= depth].min()
-        assert reach_of(depth) <= nearest_beyond
-        np.testing.assert_allclose(reach_of(depth), nearest_beyond, rtol=2e-6)
+    points, query = 1 / (1 + everyone), 1 / np.arange(1, 7)
+    dots, bound = points @ query, most_beyond(6)
+    for depth in range(6):
+        np.testing.assert_allclose(bound[depth], dots[points.argmax(axis=1) >= depth].max())
+    assert bound[6] == -np.inf
 
 
-def test_most_buckets_stay_closed(monkeypatch):
+def test_most_shelves_stay_closed(monkeypatch):
     monkeypatch.setattr(rank_index, "SMALL", 0)
     points = clustered(np.random.default_rng(7), 1000, 60)
-    index, depths = index_of(points), []
-    look = index._look
-    monkeypatch.setattr(index, "_look", lambda queries, depth, *rest: (
-        depths.extend([depth] * len(queries)) or look(queries, depth, *rest)))
+    index, looks, all_rows = index_of(points), [], []
+    pieces, look_at_all = index._pieces, index._look_at_all
+
+    def counted(*query):
+        looks.append(0)
+        for piece in pieces(*query):
+            looks[-1] += 1
+            yield piece
+
+    monkeypatch.setattr(index, "_pieces", counted)
+    monkeypatch.setattr(index, "_look_at_all", lambda queries, *rest: (
+        all_rows.extend(queries) or look_at_all(queries, *rest)))
     index.query(points[::20], 4)
-    assert depths.count(1) == 50
-    assert depths.count(60) < 10
+    assert len(looks) == 50
+    assert np.median(looks) <= 3  # the heap and one or two of 60 shelves
+    assert len(all_rows) < 10
+
+
+def test_rows_move_to_the_shelves_some_at_a_time(monkeypatch):
+    monkeypatch.setattr(rank_index, "SMALL", 100)
+    monkeypatch.setattr(rank_index, "HEAP", 30)
+    index, on_heap = RankIndex(50), []
+    for point in random(np.random.default_rng(10), 200, 50):
+        index.add(point[None])
+        on_heap.append(len(index) - index._shelves[-1])
+    assert on_heap[:101] == [*range(1, 101), 0]
+    assert on_heap[101:] == [*range(1, 30), 0] * 3 + list(range(1, 10))
 
 
 def test_an_empty_index_answers_with_nothing(small):
@@ -146,6 +181,7 @@ def test_an_empty_index_answers_with_nothing(small):
     np.testing.assert_array_equal(distances, np.full((2, 4), np.inf))
     np.testing.assert_array_equal(ids, np.full((2, 4), -1))
     assert index_of(queries).query(queries[:0], 4)[1].shape == (0, 4)
+    assert index_of(queries).find(queries[:0]).tolist() == []
 
 
 @pytest.mark.parametrize("points, message", [

@@ -1,0 +1,66 @@
+"""Checkpoints: what the values of a store of state-action pairs were at moments of its past (section IV-D).
+
+Pairs are only ever added, so those that were there at a checkpoint are the first ones: their number says which. A
+later pair is what the paper calls "not available" (N/A), and it takes no room at all. Of the values we keep only those
+that changed since the checkpoint before: 12 bytes each, where a state of 360 places has 1440. The states themselves
+are stored once.
+"""
+
+import numpy as np
+
+
+class Checkpoints:
+    """For each checkpoint and action: how many pairs there were, which values had changed, and to what."""
+
+    NAMES = "born", "n_changed", "changed", "changed_to"  # of the arrays in a file, each with the number of an action
+
+    def __init__(self, n_actions):
+        self.entries = []
+        self._latest = [np.empty(0)] * n_actions  # values at the last checkpoint
+
+    def __len__(self):
+        return len(self.entries)
+
+    def take(self, values):
+        """Add a checkpoint: values (n,) of each action."""
+        entry = []
+        for now, before in zip(values, self._latest, strict=True):
+            padded = np.append(before, np.full(len(now) - len(before), np.nan))  # a new value differs from NaN
+            changed = np.flatnonzero(padded != now)
+            entry.append((len(now), changed.astype(np.int32), now[changed]))
+        self.entries.append(entry)
+        self._latest = [now.copy() for now in values]
+
+    def values_at(self, checkpoint):
+        """The values of each action as they were at a checkpoint (0, 1, ...)."""
+        if not 0 <= checkpoint < len(self):
+            there = f"0..{len(self) - 1}" if self.entries else "one to be there"
+            raise ValueError(f"checkpoint: expected {there}, found {checkpoint}")
+        values = [np.empty(n) for n, _, _ in self.entries[checkpoint]]
+        for entry in self.entries[:checkpoint + 1]:
+            for of_action, (_, changed, to) in zip(values, entry, strict=True):
+                of_action[changed] = to
+        return values
+
+    def to_arrays(self):
+        """All checkpoints as named arrays, for a file."""
+        arrays = {}
+        for a, entries in enumerate(zip(*self.entries, strict=True) if self.entries else [()] * len(self._latest)):
+            arrays |= {f"born{a}": np.array([born for born, _, _ in entries], int),
+                       f"n_changed{a}": np.array([len(changed) for _, changed, _ in entries], int),
+                       f"changed{a}": np.concatenate([np.empty(0, np.int32), *(c for _, c, _ in entries)]),
+                       f"changed_to{a}": np.concatenate([np.empty(0), *(to for _, _, to in entries)])}
+        return arrays
+
+    @classmethod
+    def from_arrays(cls, arrays, n_actions):
+        """The checkpoints of `to_arrays`."""
+        self, by_action = cls(n_actions), []
+        for a in range(n_actions):
+            cuts = np.cumsum(arrays[f"n_changed{a}"])[:-1]
+            changed, to = (np.split(arrays[f"{name}{a}"], cuts) for name in ("changed", "changed_to"))
+            by_action.append(list(zip(arrays[f"born{a}"].tolist(), changed, to, strict=False)))
+        self.entries = list(map(list, zip(*by_action, strict=True)))
+        if self.entries:
+            self._latest = self.values_at(len(self) - 1)
+        return self
