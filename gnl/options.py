@@ -21,7 +21,7 @@ from .robot import N_ACTIONS
 K_NEIGHBOURS = 100
 MOST_STEPS = 20_000  # twice as many take four times as long and teach no more
 FIRST_VIEWS = 2000  # over which a mean is taken
-AT_ONCE = 512  # queries whose likeness to all that is remembered is held in memory
+AT_ONCE = 64  # queries whose likeness to all that is remembered is held in memory
 
 
 class Experience:
@@ -76,12 +76,13 @@ class Options:
 
 
 def nearest(states, seen, k):
-    """The k nearest of `seen` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)) int, unordered.
+    """The k nearest of `seen` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)), unordered.
 
     All states have one length, so the nearest have the greatest dot product.
     """
-    k, found = min(k, len(seen)), []
+    n, k = len(seen), min(k, len(seen))
+    found = np.empty((len(states), k), np.int32)
     for i in range(0, len(states), AT_ONCE):
         dots = states[i:i + AT_ONCE] @ seen.T
-        found.append(np.argpartition(-dots, k - 1, axis=1)[:, :k])
-    return np.concatenate(found) if found else np.empty((0, k), int)
+        found[i:i + AT_ONCE] = np.argpartition(dots, n - k, axis=1)[:, n - k:]
+    return found
