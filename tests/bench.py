@@ -13,11 +13,13 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from data_gen.rooms import make_home
-from gnl import gcn, nn, segnet
+from gnl import episode, gcn, nn, planners, segnet
 from gnl.camera import true_labels
+from gnl.nnql import NNQL
 from gnl.particles import ParticleFilter
 from gnl.places import PlaceGrid
 from gnl.rank_index import RankIndex
+from gnl.robot import N_ACTIONS, Robot
 from gnl.scene_graph import regions, scene_graph
 from gnl.strip import cast
 from tests.bench_data import ray_loop, views_like
@@ -168,6 +170,23 @@ def neighbours(table, rng):
                    ("faiss IndexFlatL2", faiss and at_once(flat.search), 64, None, None))
 
 
+def steps(table, world, rng):
+    """A step of an episode, all stages, with much to remember beside one with little."""
+    grid = PlaceGrid(world)
+    senses = episode.Senses(world, segnet.new_params(rng), gcn.GCN(grid.n_places, rng))
+    robot, starts = Robot(world), world.free_poses(64, rng)
+
+    def with_pairs(n):
+        store = NNQL(grid.n_places, N_ACTIONS)
+        for a, states in enumerate(np.array_split(views_like(n, grid.n_places, rng), N_ACTIONS)):
+            store.index[a].add(states)
+            store.values[a] = np.zeros(len(states))
+        return lambda: episode.run(senses, robot, grid, planners.greedy(store), starts, 0)
+
+    table.race("a step of 64 robots, 40,000 pairs", with_pairs(40_000), 64 * 5,
+               ("with 4,000 pairs", with_pairs(4_000), 64 * 5, 1.5, 1.0))
+
+
 def filters(table, world, rng):
     """One cycle of the particle filter beside the drawing of its random numbers alone."""
     grid = PlaceGrid(world)
@@ -193,6 +212,7 @@ def main():
     graph_nets(table, world, rng)
     neighbours(table, rng)
     filters(table, world, rng)
+    steps(table, world, rng)
     table.end()
 
 

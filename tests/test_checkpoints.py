@@ -1,0 +1,106 @@
+"""The store at a checkpoint is a snapshot taken then, costs almost nothing, and comes back from its file."""
+
+import copy
+
+import numpy as np
+import pytest
+from test_nnql import INDEXES, A, K, lived, random_states, transitions
+
+from gnl.nnql import NNQL
+
+
+def snapshots(store, n=5):
+    """Five checkpoints of a life, and a full copy of the store at each."""
+    kept = []
+    for part in range(n):
+        if part != 3:  # once nothing happens between two checkpoints
+            for step in transitions(part, 8, n_different=40 * (part + 1)):
+                store.learn(*step)
+        store.checkpoint()
+        kept.append(copy.deepcopy(store))
+    return kept
+
+
+@INDEXES
+def test_the_store_at_a_checkpoint_is_a_snapshot_taken_then(index):
+    store = NNQL(K, A, index=index)
+    store.checkpoint()  # the first one has nothing to remember
+    kept = [copy.deepcopy(store), *snapshots(store)]
+    for step in transitions(77, 10):
+        store.learn(*step)
+    asked = np.concatenate([random_states(np.random.default_rng(5), 20), *(step[0] for step in transitions(2, 3))])
+    now = store.q_values(asked)
+    for i, snapshot in enumerate(kept):
+        past = store.at(i)
+        for ours, theirs in zip(past.values, snapshot.values, strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+        np.testing.assert_array_equal(past.q_values(asked), snapshot.q_values(asked))
+    assert abs(past.q_values(asked) - now).max() > 0
+    np.testing.assert_array_equal(store.q_values(asked), now)
+
+
+def test_the_past_does_not_change_as_the_present_learns():
+    store = lived(3)
+    store.checkpoint()
+    past, asked = store.at(0), random_states(np.random.default_rng(5), 20)
+    before = past.q_values(asked)
+    for step in transitions(1, 10):
+        store.learn(*step)
+    np.testing.assert_array_equal(past.q_values(asked), before)
+    assert abs(store.q_values(asked) - before).max() > 0
+    assert not hasattr(past, "learn")
+    assert not hasattr(past, "checkpoint")
+
+
+@pytest.mark.parametrize("checkpoint", [-1, 2])
+def test_a_checkpoint_that_is_none_is_refused(checkpoint):
+    store = lived(1)
+    store.checkpoint()
+    store.checkpoint()
+    with pytest.raises(ValueError, match=rf"checkpoint: expected 0\.\.1, found {checkpoint}"):
+        store.at(checkpoint)
+
+
+def test_checkpoints_cost_little_beside_the_states():
+    """A checkpoint logs a birth count and the values that changed: 12 bytes each, a state of 360 places has 1440."""
+    rng, store = np.random.default_rng(0), NNQL(360, A)
+    known = random_states(rng, 600, 360)
+    for step in range(100):
+        which = rng.integers(len(known), size=32)
+        store.learn(known[which], rng.integers(A, size=32), np.ones(32), known[which], np.ones(32, bool))
+        if step % 10 == 9:
+            store.checkpoint()
+    log = sum(changed.nbytes + values.nbytes for entry in store.log.entries for _, changed, values in entry)
+    states = sum(len(values) for values in store.values) * 360 * 4
+    changes = sum(len(changed) for entry in store.log.entries for _, changed, _ in entry)
+    assert log == 12 * changes
+    assert log < 0.05 * states  # measured: 0.014
+
+
+def test_a_checkpoint_without_news_logs_nothing():
+    store = lived(5)
+    store.checkpoint()
+    store.checkpoint()
+    assert all(len(changed) == len(values) == 0 for _, changed, values in store.log.entries[1])
+
+
+@pytest.mark.parametrize("n_checkpoints", [0, 3])
+def test_a_saved_store_is_read_back_with_its_past_and_goes_on_as_the_other(tmp_path, n_checkpoints):
+    store = NNQL(K, A, k=3, alpha=0.2)
+    snapshots(store, n_checkpoints)
+    for step in transitions(9, 3):
+        store.learn(*step)
+    store.save(tmp_path / "nnql.npz", {"home": 800})
+    again, made_by = NNQL.load(tmp_path / "nnql.npz", k=3, alpha=0.2)
+    assert made_by == {"home": 800}
+    for both in (store, again):
+        for step in transitions(10, 3):
+            both.learn(*step)
+        both.checkpoint()
+    sizes = [[len(changed) for _, changed, _ in both.log.entries[-1]] for both in (again, store)]
+    assert sizes[0] == sizes[1]
+    asked = random_states(np.random.default_rng(5), 40)
+    assert len(again.log) == n_checkpoints + 1
+    for i in range(n_checkpoints + 1):
+        np.testing.assert_array_equal(again.at(i).q_values(asked), store.at(i).q_values(asked))
+    np.testing.assert_array_equal(again.q_values(asked), store.q_values(asked))
