@@ -3,12 +3,13 @@
 import argparse
 from pathlib import Path
 
+from gnl.draw import save_png
 from gnl.experiment import Cell
 from gnl.files import load_arrays, save_arrays
 from gnl.terminal import Stage, guarded, processes
 
 from .rooms import make_home
-from .starts import starts_of
+from .starts import picture, starts_of
 from .views import training_views
 
 
@@ -44,6 +45,8 @@ def starts(args):
         drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
         for i, (cell, poses) in enumerate(zip(todo, drawn, strict=True)):
             save_arrays(files[cell], sizes, **poses.result())
+            if args.picture:
+                save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
             stage((i + 1) / len(todo))
     stage.done(f"{len(todo)} gaps between where one learns and where one is tested")
 
@@ -72,6 +75,7 @@ def main(argv=None):
     command.add_argument("--tests", type=int, default=100)
     command.add_argument("--validation", type=int, default=10)
     command.add_argument("--jobs", type=int, default=1)
+    command.add_argument("--picture", action="store_true", help="draw both kinds of starts on the map, too")
     command.set_defaults(run=starts)
     args = parser.parse_args(argv)
     guarded("python -m data_gen", args.run, args)

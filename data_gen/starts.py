@@ -9,6 +9,8 @@ nearest test start and is turned by more than T_theta from it, so that no view o
 import numpy as np
 from scipy.spatial import cKDTree
 
+from gnl.draw import sheet
+from gnl.floor_map import BELIEF, ROBOT, Map
 from gnl.places import wrap_angle
 
 DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
@@ -54,3 +56,12 @@ def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
     distance, nearest = cKDTree(tests[:, :2]).query(poses[:, :2])
     turned = abs(wrap_angle(poses[:, 2] - tests[nearest, 2]))
     return (distance > t_xy_m) & (turned > t_theta_rad)
+
+
+def picture(world, starts, n=400, width_px=720):
+    """A map of the test starts and of n of the training starts, each a little arrow."""
+    plan, training = Map(world, width_px), starts["training"][:n]
+    plan.starts(training, BELIEF)
+    plan.starts(starts["tests"], ROBOT)
+    return sheet([plan.picture()], [f"orange: all {len(starts['tests'])} test starts; "
+                                    f"violet: {len(training)} of {len(starts['training'])} training starts"])
