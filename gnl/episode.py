@@ -190,14 +190,16 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
 
 
 def race(senses, robot, grid, starts, seed, rules=None):
-    """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,), the best first.
+    """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,), the winner first.
 
     A sequence is worth the belief that it leaves in the true place, in the mean. Of 41 the luckiest looks best, so they
-    race: after each round the best third goes on, from three times as many new starts, the same for all.
+    race: after each round the best third goes on, from three times as many new starts, the same for all. What repeats
+    one action is always in the race: little beats it, and options.py asks what it is worth.
     """
     length = (rules or Rules()).length
     sequences, first = planners.sequences(length), 0
     total, count, running = np.zeros(len(sequences)), np.zeros(len(sequences)), np.arange(len(sequences))
+    repeats = np.flatnonzero((sequences == sequences[:, :1]).all(1))
     for rank, child in enumerate(_seed(seed).spawn(length)):
         size = max(1, len(starts) * 2 * 3 ** rank // (3 ** length - 1))
         groups = side_by_side(np.arange(size * len(running)))
@@ -207,9 +209,10 @@ def race(senses, robot, grid, starts, seed, rules=None):
             record = run(senses, robot, grid, plan, starts[(first + start) % len(starts)], grandchild, rules)
             np.add.at(total, running[which], record.belief[:, -1])
         first, count[running] = first + size, count[running] + size
-        running = running[np.argsort(-total[running], kind="stable")[:-(-len(running) // 3)]]
+        finalists, best = running, running[np.argsort(-total[running], kind="stable")]
+        running = np.union1d(best[:-(-len(best) // 3)], repeats)
     worth = total / count
-    order = np.append(running, np.setdiff1d(np.argsort(-worth, kind="stable"), running, assume_unique=True))
+    order = np.lexsort((-worth, ~np.isin(np.arange(len(sequences)), finalists)))  # finalists first, the best one ahead
     return sequences[order], worth[order]
 
 

@@ -23,7 +23,7 @@ from .places import PlaceGrid
 from .robot import Robot
 
 N_CHECKPOINTS = 10
-RACE_STARTS = 320  # training starts over which the fixed sequences race
+RACE_STARTS = 240  # training starts over which the fixed sequences race
 GAPS_M, GAPS_DEG = (0.2, 0.4, 0.6, 0.8, 1.0), (10, 30, 50, 70, 90)  # the paper's, 25 in all
 
 
