@@ -19,10 +19,11 @@ ALIASING ?= 0.3
 PLAN ?=
 ARGS ?=
 TABLE ?= out/table
+CHAPTERS ?=
 VIEWS := out/data/views-$(NOISE).npz
 HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
-.PHONY: help demo test lint table bench clean
+.PHONY: help demo test lint table tutorials figures bench clean
 .DEFAULT_GOAL := help
 
 help:
@@ -33,6 +34,7 @@ help:
 	@echo "make lint    check the style of the code"
 	@echo "make table   the paper's experiment at full scale, then its report (out/table; most of an hour)"
 	@echo "             ARGS='--quick' a small slice in a minute; more with  $(RUN) -m gnl table --help"
+	@echo "make tutorials   run every chapter and render its figures anew; CHAPTERS='04 07' some of them"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"
 	@echo "make clean   remove .venv and out"
 
@@ -50,6 +52,10 @@ test: .venv/ready
 
 lint: .venv/ready
 	@$(RUN) -m ruff check .
+
+# The chapters draw their figures: to run them is to render them anew.
+tutorials figures: .venv/ready
+	@$(RUN) tutorials/run.py $(CHAPTERS)
 
 bench: .venv/ready
 	@$(RUN) -m tests.bench

@@ -17,7 +17,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from . import episode, planners
+from . import episode, learned, planners
 from .options import Experience, Options
 from .places import PlaceGrid
 from .robot import Robot
@@ -47,11 +47,12 @@ class Cell:
         return [self.seed, self.world, round(1000 * self.t_xy_m), self.t_theta_deg]
 
 
-def run_cell(cell, senses, starts):
+def run_cell(cell, senses, starts, settings=None):
     """Learn and test in one cell; a function of its arguments alone, in whatever process it runs.
 
-    starts  : "training", "validation" and "tests" (n, 3) each
-    returns : the outcomes, and what they cost, both as dicts for JSON
+    starts   : "training", "validation" and "tests" (n, 3) each
+    settings : a dict that goes into the outcomes with what identifies home, net and GCN
+    returns  : the outcomes, and what they cost, both as dicts for JSON
     """
     began = now()
     robot, grid = Robot(senses.world), PlaceGrid(senses.world)
@@ -69,7 +70,10 @@ def run_cell(cell, senses, starts):
     plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours+": planners.go_on(options)}
     tests = {name: test(plan, starts["tests"], testing) for name, plan in plans.items()}
     past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
-    result = {"name": cell.name, "cell": asdict(cell), "sequence": sequences[0].tolist(), "tests": tests,
+    made_from = {"home": learned.digest(senses.world.plan), "gcn": learned.fingerprint(senses.gcn.params),
+                 "net": senses.net and learned.fingerprint(senses.net)}
+    result = {"name": cell.name, "cell": asdict(cell), "settings": settings, "made from": made_from,
+              "sequence": sequences[0].tolist(), "tests": tests,
               "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
               "validation": [test(plan, starts["validation"], validating) for plan in past]}
     return result, costs(senses, began, sum(map(len, store.values)))
@@ -99,7 +103,7 @@ def now():
 def costs(senses, began, n_pairs):
     """Seconds of each stage, and where and with what they were spent."""
     return {"seconds": time.time() - began[0], "of processor": time.process_time() - began[1], "views": senses.views,
-            "of stages": senses.seconds, "pairs": n_pairs, "machine": platform.machine(),
+            "of stages": senses.seconds, "pairs": n_pairs, "host": platform.node(), "machine": platform.platform(),
             "peak MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
             "versions": {"python": platform.python_version(), **{name: version(name) for name in
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}

@@ -69,8 +69,9 @@ def run(args):
         with executor(args.jobs, args.dask) as pool:
             senses = prepare(out, settings, todo, args.jobs, pool)
             stage = Stage("table")
-            run_jobs(out, {cell.name: (run_cell, cell, senses[cell.world], load_starts(out, cell)) for cell in todo},
-                     settings.episodes, pool, stage)
+            jobs = {cell.name: (run_cell, cell, senses[cell.world], load_starts(out, cell), asdict(settings))
+                    for cell in todo}
+            run_jobs(out, jobs, settings.episodes, pool, stage)
             stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
 
@@ -130,6 +131,8 @@ def check(args):
                                ("tests", settings.tests, 2), ("episodes", settings.episodes, N_CHECKPOINTS)):
         if value < least:
             raise ValueError(f"--{name}: expected at least {least}, found {value}")
+    if settings.episodes % N_CHECKPOINTS:
+        raise ValueError(f"--episodes: expected a multiple of {N_CHECKPOINTS}, found {settings.episodes}")
     check_noise(settings.noise, "--noise")
     worlds = [800] if args.quick and args.worlds is WORLDS else [world_of(name) for name in args.worlds]
     gaps = [gap_of(name) for name in args.gaps or (QUICK_GAPS if args.quick else GAPS)]

@@ -74,7 +74,7 @@ def test_every_cell_is_a_file_with_all_that_is_needed_to_judge_it(reference):
                 assert set(right) <= {"0", "1"}
                 assert all(w == "1" for r, w in zip(right, where, strict=True) if r == "1")  # who knows both knows one
         beside = json.loads((reference.folder / "costs" / name).read_bytes())
-        assert {"seconds", "views", "versions", "machine", "peak MB"} <= beside.keys()
+        assert {"seconds", "views", "versions", "host", "peak MB"} <= beside.keys()
 
 
 def test_the_first_look_is_the_same_for_all_methods(reference):
@@ -143,6 +143,7 @@ def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, prepared, c
     (["--gaps", "0.3/10"], "found '0.3/10'"), (["--gaps", "near"], "found 'near'"),
     (["--jobs", "0"], "--jobs: expected at least 1, found 0"), (["--jobs", "-2"], "found -2"),
     (["--episodes", "9"], "--episodes: expected at least 10, found 9"),
+    (["--episodes", "25"], "--episodes: expected a multiple of 10, found 25"),
     (["--tests", "1"], "--tests: expected at least 2, found 1"), (["--seed", "-1"], "--seed: expected at least 0"),
     (["--repeats", "0"], "--repeats: expected at least 1, found 0"), (["--noise", "-1"], "--noise: expected 0..10")])
 def test_an_option_that_cannot_be_is_one_line_and_nothing_is_written(tmp_path, capsys, options, words):

@@ -1,0 +1,144 @@
+"""The tutorials: every chapter runs and says what it prints, every grader tells right answers from wrong ones."""
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).parents[1]
+TUTORIALS = ROOT / "tutorials"
+
+
+def load(path):
+    """A file as a module, its own folder on the path, as when it is run."""
+    sys.path.insert(0, str(path.parent))
+    try:
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
+    finally:
+        sys.path.remove(str(path.parent))
+
+
+runner = load(TUTORIALS / "run.py")
+grader = load(TUTORIALS / "exercises" / "grader.py")
+CHAPTERS = runner.chapters()
+EXERCISES = sorted((TUTORIALS / "exercises").glob("ex_*.py"))
+
+
+def number(path):
+    return path.stem[-2:]
+
+
+def page(tmp_path, text):
+    path = tmp_path / "page.md"
+    path.write_text(text)
+    return path
+
+
+def test_a_page_whose_outputs_are_as_written_runs(tmp_path):
+    runner.run(page(tmp_path, "# A\n\n```python\na = 2\nprint(a, 'is', 0.123)\n```\n\n```text\n2 is ...\n```\n\n"
+                              "```python\nassert a == 2\n```\n\n```sh\nnot run\n```\n"), tmp_path)
+
+
+@pytest.mark.parametrize("written", ["3", "2 2", "", "2\nmore"])
+def test_an_output_that_is_not_as_written_is_named_by_its_line(tmp_path, written):
+    text = f"# A\n\n```python\nprint(2)\n```\n\n```text\n{written}\n```\n"
+    with pytest.raises(ValueError, match=r"page.md, line 7: expected the output"):
+        runner.run(page(tmp_path, text), tmp_path)
+
+
+def test_an_error_names_its_line_of_the_page(tmp_path):
+    path = page(tmp_path, "# A\n\ntext\n\n```python\na = 1\nb = a / 0\n```\n")
+    with pytest.raises(ZeroDivisionError) as error:
+        runner.run(path, tmp_path)
+    assert error.traceback[-1].lineno + 1 == 7
+
+
+def test_a_page_runs_in_its_folder_and_leaves_the_current_one_as_it_was(tmp_path):
+    before = Path.cwd()
+    runner.run(page(tmp_path, "```python\nopen('here', 'w').close()\n```\n"), tmp_path)
+    assert (tmp_path / "here").exists()
+    assert Path.cwd() == before
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda path: path.stem)
+def test_a_chapter_runs_says_what_it_prints_and_draws_its_figures(chapter, tmp_path):
+    folder = tmp_path / "tutorials"
+    (folder / "figures").mkdir(parents=True)
+    runner.run(chapter, folder)
+    drawn = {path.name for path in (folder / "figures").iterdir()}
+    shown = set(re.findall(r"\(figures/([^)]+)\)", chapter.read_text()))
+    assert shown == drawn
+    for name in drawn:
+        committed = TUTORIALS / "figures" / name
+        assert committed.stat().st_size <= 100_000
+        with Image.open(committed) as one, Image.open(folder / "figures" / name) as other:
+            assert one.size == other.size
+            difference = np.asarray(one.convert("RGB"), float) - np.asarray(other.convert("RGB"), float)
+        assert abs(difference).mean() < 1, f"{name} is no longer what the chapter draws"
+
+
+@pytest.mark.parametrize("exercises", EXERCISES, ids=number)
+def test_the_solutions_are_right(exercises):
+    tasks, solutions = load(exercises).TASKS, load(TUTORIALS / "solutions" / f"sol_{number(exercises)}.py")
+    for answer, check in tasks.values():
+        check(getattr(solutions, answer.__name__))
+
+
+@pytest.mark.parametrize("exercises", EXERCISES, ids=number)
+def test_the_stubs_are_not_right(exercises, capsys):
+    tasks = load(exercises).TASKS
+    assert grader.grade(tasks) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(tasks)
+
+
+@pytest.mark.parametrize("exercises", EXERCISES, ids=number)
+def test_at_least_two_plausible_wrong_answers_to_each_task_are_told_from_the_right_one(exercises):
+    module, wrong = load(exercises), load(ROOT / "tests" / "tutorials" / f"wrong_{number(exercises)}.py").WRONG
+    assert wrong.keys() == module.TASKS.keys()
+    for task, (_, check) in module.TASKS.items():
+        assert len(wrong[task]) >= 2
+        for answer in wrong[task]:
+            with pytest.raises(Exception) as error:  # noqa: PT011 (of any kind: what is wrong may also break)
+                check(answer)
+            assert not isinstance(error.value, NotImplementedError)
+
+
+@pytest.mark.parametrize("exercises", EXERCISES, ids=number)
+def test_a_chapter_states_each_of_its_exercises_with_a_hint(exercises):
+    (text,) = [chapter.read_text() for chapter in CHAPTERS if chapter.stem[:2] == number(exercises)]
+    tasks = load(exercises).TASKS
+    assert 3 <= len(tasks) <= 5
+    assert all(re.search(rf"\b{re.escape(task)}\b", text) for task in tasks)
+    assert text.count("<details>") == text.count("</details>") >= len(tasks)
+
+
+def test_right_answers_are_counted_and_wrong_ones_are_told_with_what_was_got_and_expected(capsys):
+    def double(x):
+        return 2 * np.asarray(x)
+
+    def grade_1(double):
+        grader.expect("double of 2", double(2), 4)
+
+    def grade_2(double):
+        grader.expect("double of (1, 2)", double([1, 2]), [2, 5])
+
+    def grade_3(double):
+        grader.expect("shape", double([1, 2]), [[2, 4]])
+
+    def grade_4(double):
+        double(None)
+
+    graders = enumerate((grade_1, grade_2, grade_3, grade_4), 1)
+    assert grader.grade({f"1.{i}": (double, check) for i, check in graders}) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "1.1  right"
+    assert lines[1] == "1.2  not yet: double of (1, 2) at (1,): got 4, expected 5"
+    assert lines[2] == "1.3  not yet: shape: got shape (2,), expected (1, 2)"
+    assert re.fullmatch(r"1\.4  not yet: TypeError in line \d+: .*", lines[3])
