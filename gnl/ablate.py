@@ -18,11 +18,11 @@ from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import paired_difference
 from .experiment import Cell, arrays, costs, now, outcomes
-from .files import write_whole
+from .files import load_arrays, write_whole
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, executor, finished, load_starts, path_of, prepare, run_jobs
+from .table import Settings, agree, executor, finished, path_of, prepare, run_jobs, starts_of
 from .terminal import Stage
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
@@ -55,7 +55,7 @@ def run(args):
         with executor(args.jobs) as pool:
             senses = prepare(out, SETTINGS, CELLS, args.jobs, pool)
             stage = Stage("ablate")
-            run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_starts(out, cell))
+            run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_arrays(starts_of(out, cell))[0])
                            for name, (choice, cell) in todo.items()}, SETTINGS.episodes, pool, stage)
             stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
     measured = effects(out, chosen)

@@ -69,8 +69,8 @@ def run(args):
         with executor(args.jobs, args.dask) as pool:
             senses = prepare(out, settings, todo, args.jobs, pool)
             stage = Stage("table")
-            jobs = {cell.name: (run_cell, cell, senses[cell.world], load_starts(out, cell), asdict(settings))
-                    for cell in todo}
+            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in todo}
+            jobs = {cell.name: (run_cell, cell, senses[cell.world], starts[cell], asdict(settings)) for cell in todo}
             run_jobs(out, jobs, settings.episodes, pool, stage)
             stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
@@ -93,16 +93,17 @@ def run_jobs(out, jobs, n_episodes, pool, stage):
 def prepare(out, settings, cells, jobs, pool):
     """What the cells share: homes and starts, drawn by a program of their own, the net, and a GCN for each world."""
     data, worlds = out / "data", sorted({cell.world for cell in cells})
-    draw = [sys.executable, "-m", "data_gen"]
-    views = data / "views.npz"
-    programs = [[*draw, "views", views, "--homes", settings.net_homes, "--views", settings.net_views,
-                 "--noise", settings.noise]]
-    programs += [[*draw, "home", data / f"home-{world}.json", "--seed", world] for world in worlds]
-    names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
-    programs += [[*draw, "starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,
-                  "--validation", settings.validation, "--jobs", jobs]]
+    views, homes = data / "views.npz", {world: data / f"home-{world}.json" for world in worlds}
+    programs = [] if views.exists() else [["views", views, "--homes", settings.net_homes, "--views",
+                                           settings.net_views, "--noise", settings.noise]]
+    programs += [["home", path, "--seed", world] for world, path in homes.items() if not path.exists()]
+    lacking = [cell for cell in cells if not starts_of(out, cell).exists()]
+    if lacking:
+        names = [part for cell in lacking for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
+        programs.append(["starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,
+                         "--validation", settings.validation, "--jobs", jobs])
     for program in programs:
-        status = subprocess.run([str(word) for word in program]).returncode
+        status = subprocess.run([sys.executable, "-m", "data_gen", *map(str, program)]).returncode
         if status:
             sys.exit(status)  # it has said why
 
@@ -112,7 +113,7 @@ def prepare(out, settings, cells, jobs, pool):
                                    settings.net_epochs, 0, stage)
     stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
-    senses = {world: Senses(World.load(data / f"home-{world}.json"), net, None, settings.noise) for world in worlds}
+    senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
     made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
     classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
@@ -184,9 +185,9 @@ def path_of(out, name):
     return Path(out) / "cells" / f"{name}.json"
 
 
-def load_starts(out, cell):
-    """Start poses of a cell, by what they are for."""
-    return load_arrays(Path(out) / "data" / f"starts-{cell.name}.npz")[0]
+def starts_of(out, cell):
+    """The file of a cell's start poses."""
+    return Path(out) / "data" / f"starts-{cell.name}.npz"
 
 
 @contextmanager
@@ -200,5 +201,5 @@ def executor(jobs, address=None):
         from dask.distributed import Client
     except ImportError:
         raise ValueError("--dask: expected dask to be installed, pip install 'gnl[cluster]'; found none") from None
-    with Client(address, timeout="10s") as client:
+    with Client(address) as client:
         yield client.get_executor()

@@ -164,7 +164,10 @@ def test_results_of_other_settings_are_refused_by_the_name_of_the_setting(refere
 
 
 def test_where_nobody_listens_is_one_line(prepared, capsys):
-    assert main_here(prepared, "--dask", "tcp://127.0.0.1:9") == 2
+    import dask
+
+    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
+        assert main_here(prepared, "--dask", "tcp://127.0.0.1:9") == 2
     err = capsys.readouterr().err
     assert "127.0.0.1:9" in err
     assert err.count("\n") == 1

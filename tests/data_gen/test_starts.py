@@ -67,8 +67,9 @@ def test_training_starts_are_uniform_but_for_the_gap():
     starts = training_starts(home, tests, 0.5, np.radians(60), 20_000, np.random.default_rng(1))
     turned = (starts[:, 2] - 0.5) % (2 * np.pi)
     assert stats.kstest(turned, stats.uniform(np.pi / 3, 4 * np.pi / 3).cdf).pvalue > 1e-3
-    area = np.array([[home.is_reachable(np.array([[x, y]]))[0] and np.hypot(x - 3, y - 2) > 0.5
-                      for y in np.arange(0.05, 4, 0.1)] for x in np.arange(0.05, 6, 0.1)]).reshape(6, 10, 4, 10)
+    x, y = np.meshgrid(np.arange(0.05, 6, 0.1), np.arange(0.05, 4, 0.1), indexing="ij")
+    free = home.is_reachable(np.stack([x.ravel(), y.ravel()], 1)).reshape(x.shape)
+    area = (free & (np.hypot(x - 3, y - 2) > 0.5)).reshape(6, 10, 4, 10)
     expected = area.sum((1, 3)).ravel()  # of each square metre, what is free and beyond the gap
     found = np.histogram2d(starts[:, 0], starts[:, 1], [np.arange(7), np.arange(5)])[0].ravel()
     assert (abs(found / len(starts) - expected / expected.sum()) < 0.012).all()
