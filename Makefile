@@ -28,7 +28,7 @@ HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
 help:
 	@echo "make demo    learn every stage in a home and let a robot find out where it is (out/demo)"
-	@echo "             PLAN=path.json a home of your own    SEED=0 NOISE=1 HOUSE=800 ALIASING=0.3"
+	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1 HOUSE=800 ALIASING=0.3"
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"
@@ -41,14 +41,15 @@ help:
 demo: .venv/ready
 	@test -n "$(PLAN)" || $(RUN) -m data_gen home "$(HOME_PLAN)" --seed "$(HOUSE)" --aliasing "$(ALIASING)"
 	@$(RUN) -m data_gen views "$(VIEWS)" --noise "$(NOISE)"
-	@$(RUN) -m gnl demo --plan "$(HOME_PLAN)" --views "$(VIEWS)" --seed "$(SEED)" --noise "$(NOISE)" $(ARGS)
+	@$(RUN) -m gnl demo --plan "$(HOME_PLAN)" --views "$(VIEWS)" --seed "$(SEED)" --noise "$(NOISE)" \
+	    --pictures "out/demo$(if $(PLAN),-$$(basename "$(PLAN)" .json))" $(ARGS)
 
 table: .venv/ready
 	@$(RUN) -m gnl table --out "$(TABLE)" $(ARGS)
 	@$(RUN) -m gnl report --out "$(TABLE)"
 
 test: .venv/ready
-	@$(RUN) -m pytest
+	@$(RUN) -m pytest -n auto --dist loadfile
 
 lint: .venv/ready
 	@$(RUN) -m ruff check .

@@ -17,8 +17,8 @@ from gnl.experiment import Cell
 
 TINIEST = table.Settings(episodes=10, tests=4, validation=2, net_homes=1, net_views=16, net_epochs=1, gcn_views=64,
                           gcn_epochs=1)
-OPTIONS = ["--quick", "--gaps", "0.2/10", "0.6/50", "1.0/90"]
-NAMES = ["800-0.2m-10deg-seed0", "800-0.6m-50deg-seed0", "800-1m-90deg-seed0"]
+OPTIONS = ["--quick", "--gaps", "0.2/10", "1.0/90"]
+NAMES = ["800-0.2m-10deg-seed0", "800-1m-90deg-seed0"]
 
 
 def command(out, *options):
@@ -85,7 +85,7 @@ def test_the_first_look_is_the_same_for_all_methods(reference):
 
 
 def test_two_processes_give_the_same_bytes_however_often_they_are_killed(reference, prepared):
-    for n_cells in (0, 1, 2):
+    for n_cells in (0, 1):
         process = subprocess.Popen(command(prepared, "--jobs", 2), stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, start_new_session=True)
         try:
@@ -105,7 +105,7 @@ def test_two_processes_give_the_same_bytes_however_often_they_are_killed(referen
 def test_a_second_run_has_nothing_to_do(reference):
     before = {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
     done = run(reference.folder, "--jobs", 8)
-    assert done.out == f"3 cells in {reference.folder / 'cells'}; python -m gnl report --out {reference.folder}\n"
+    assert done.out == f"2 cells in {reference.folder / 'cells'}; python -m gnl report --out {reference.folder}\n"
     assert before == {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
 
 
