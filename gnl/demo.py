@@ -27,12 +27,12 @@ TRIES = 40  # episodes looked through for one that starts in doubt and ends well
 class Scale:
     """How much the demonstration learns and tests; behind it the paper's numbers."""
 
-    net_epochs: int = 3
+    net_epochs: int = 4
     gcn_views: int = 5000  # 10,000
     gcn_epochs: int = 25  # 100
     gcn_batch: int = 128  # 32; large batches and steps learn most in a short time
     episodes: int = 1200  # 10,000
-    scan_starts: int = 120
+    scan_starts: int = 160
     tests: int = 320  # 100
 
 
@@ -41,6 +41,7 @@ def add_arguments(parser):
     parser.add_argument("--plan", required=True, help="floor plan of the home (.json)")
     parser.add_argument("--views", required=True, help="training views of other homes, from `python -m data_gen views`")
     parser.add_argument("--out", default="out", help="folder for what is learned and drawn (out)")
+    parser.add_argument("--pictures", help="folder for the pictures (OUT/demo)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise of the views (1)")
     for name, default in vars(Scale()).items():
@@ -56,18 +57,33 @@ def run(args):
 
 def play(args, scale, helper):
     """The stages one by one; `helper` is an executor of one process for the other core."""
-    out, world = Path(args.out), World.load(args.plan)
-    grid, robot, parts = PlaceGrid(world), Robot(world), out / "learned"
+    world = World.load(args.plan)
+    grid, robot = PlaceGrid(world), Robot(world)
     x0, y0, x1, y1 = world.bounds
     print(f"{world.name}: {x1 - x0:.1f} x {y1 - y0:.1f} m, {len(world.plan.get('objects', []))} objects, "
           f"{grid.n_places} places ({grid.nx} x {grid.ny} cells x {grid.n_bearings} bearings)")
+    senses, store, sequence = learn(args, scale, helper, world, grid, robot)
+    starts = world.free_poses(scale.tests, rng(args, 5))
+    plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours": planners.greedy(store)}
+    test(args, senses, grid, robot, plans, starts)
+    show(args, senses, grid, robot, store, starts)
+
+
+def learn(args, scale, helper, world, grid, robot):
+    """Learn what is not in its file yet, and say how good it is: Senses, the NNQL store, the sequence of Scan."""
+    parts = Path(args.out) / "learned"
+    known = set(parts.glob("*.npz"))
+
+    def done(stage, text, now=""):
+        new = set(parts.glob(f"{stage.name}-*.npz")) - known
+        stage.done(text + (now if new else ", learned before"))
 
     stage = Stage("net")
     views, views_made_by = load_views(args.views)
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
     seen, true = render(world, world.free_poses(200, rng(args, 1)), rng(args, 2), segnet.SIZE_PX, args.noise)
     right, overlap = segnet.accuracy(segnet.predict(net, seen), true)
-    stage.done(f"segmentation of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
+    done(stage, f"labels of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
 
     stage = Stage("gcn")
     senses = episode.Senses(world, net, None, args.noise)
@@ -78,34 +94,39 @@ def play(args, scale, helper):
                                           **how)
     poses = world.free_poses(500, rng(args, 3))
     first, third = learned.top_places(senses.gcn, senses.look_around(poses, rng(args, 4)), grid.place_of(poses))
-    stage.done(f"place from one new view: right {first:.0%}, among the first three {third:.0%}")
+    done(stage, f"place from one new view: right {first:.0%}, in the first three {third:.0%}")
 
     stage = Stage("nnql")
     settings |= {"gcn": learned.digest([scale.gcn_views, how])}
     scan = learned.fixed_scan(parts, senses, grid, scale.scan_starts, args.seed, settings, helper)
     store = learned.q_values(parts, senses, robot, grid, scale.episodes, args.seed, settings, stage)
-    stage.done(f"{scale.episodes} episodes, {sum(map(len, store.values))} state-action pairs remembered")
+    done(stage, f"{scale.episodes} episodes, {sum(map(len, store.values))} state-action pairs remembered")
     stage = Stage("scan")
     sequence = scan()
-    stage.done(f"meanwhile all action sequences raced; the best: {', '.join(ACTIONS[a] for a in sequence)}")
+    done(stage, f"best action sequence: {', '.join(ACTIONS[a] for a in sequence)}", ", raced meanwhile")
+    return senses, store, sequence
 
+
+def test(args, senses, grid, robot, plans, starts):
+    """Let every method start from the same poses, and print what became of it."""
     stage = Stage("test")
-    starts = world.free_poses(scale.tests, rng(args, 5))
     senses.seconds, senses.views = {}, 0
-    plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours": planners.greedy(store)}
     records = {}
     for i, (name, plan) in enumerate(plans.items()):
         stage(i / len(plans), name)
         records[name] = episode.run_all(senses, robot, grid, plan, starts, args.seed + 6)
-    stage.done(f"{scale.tests} episodes of each method, from the same starts with the same noise")
+    stage.done(f"{len(starts)} episodes of each method, from the same starts with the same noise")
     print_table(records)
     print_costs(senses)
 
-    stage = Stage("draw")
-    draw_stages(out / "demo", world, grid, senses, starts, rng(args, 7))
+
+def show(args, senses, grid, robot, store, starts):
+    """Draw the stages and an episode."""
+    stage, folder = Stage("draw"), Path(args.pictures or Path(args.out, "demo"))
+    draw_stages(folder, senses, grid, starts, rng(args, 7))
     looks = telling_episode(senses, robot, grid, store, starts, args.seed, stage)
-    replay.save_gif(looks, world, grid, out / "demo" / "episode.gif")
-    stage.done(f"home, view, labels, strip, graph, ranks and episode.gif in {out / 'demo'}")
+    replay.save_gif(looks, senses.world, grid, folder / "episode.gif")
+    stage.done(f"home, view, labels, strip, graph, ranks and episode.gif in {folder}")
 
 
 def check(args):
@@ -154,22 +175,31 @@ def print_costs(senses):
     print("  " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
 
 
-def draw_stages(folder, world, grid, senses, starts, stream):
+def draw_stages(folder, senses, grid, starts, stream):
     """A picture of the home, and of each stage for the start from which there is most to see."""
-    best = np.diff(scene_graph(true_labels(world, starts, segnet.SIZE_PX)).starts).argmax()
+    world, size = senses.world, segnet.SIZE_PX
+    best = np.diff(scene_graph(true_labels(world, starts, size)).starts).argmax()
     pose = starts[best:best + 1]
     large, _ = render(world, pose, copy.deepcopy(stream), noise=senses.noise)  # the same light in both sizes
-    small, true = render(world, pose, stream, segnet.SIZE_PX, senses.noise)
+    small, true = render(world, pose, stream, size, senses.noise)
     labels = true if senses.net is None else segnet.predict(senses.net, small)
     graph = scene_graph(labels)
     values = reciprocal_ranks(senses.gcn.scores(graph))[0]
     strip = [part[0] for part in cast(world, pose).dense()]
+    view = draw.view(large[0], 512)
     pictures = {
-        "1-home": draw.home(world, 900, grid, starts), "2-view": draw.view(large[0], 512),
-        "3-labels": draw.sheet([draw.labels(labels[0], 384), draw.labels(true[0], 384)], ["the net", "the truth"]),
-        "4-strip": draw.strip(world, strip, 512, 256),
-        "5-graph": draw.graph(graph, draw.view(large[0], 512)),
-        "6-ranks": draw.ranks(grid, values, int(grid.place_of(pose)[0]), 10, 320)}
+        "1-home": draw.home(world, 900, grid, starts, pose[0]),
+        "2-view": draw.sheet([view], [f"what the robot sees; its net gets {size} x {size} pixels of it"]),
+        "3-labels": draw.sheet([draw.sheet([draw.labels(labels[0], 384), draw.labels(true[0], 384)],
+                                           ["what the net recognises", "the truth"], margin=6),
+                                draw.legend(np.unique([labels, true]))], columns=1, margin=6),
+        "4-strip": draw.sheet([draw.strip(world, strip)],
+                              ["what each ray of the view crosses on its way, at any height; white: nothing"]),
+        "5-graph": draw.sheet([draw.graph(graph, view)],
+                              ["the scene graph: regions that the net recognises, lines between neighbours"]),
+        "6-ranks": draw.sheet([draw.ranks(grid, values, int(grid.place_of(pose)[0]), 10, 400,
+                                          ("rank", "place: cell and bearing", "1 / rank"))],
+                              ["where such a graph is seen, most likely first; green: the true place"])}
     for name, picture in pictures.items():
         draw.save_png(picture, folder / f"{name}.png")
 

@@ -7,33 +7,68 @@ a picture, so this module may use all of them.
 import io
 
 import numpy as np
-from PIL import Image, ImageFont
+from PIL import Image
 
 from .classes import CLASSES, N_CLASSES, PALETTE
 from .files import write_whole
-from .floor_map import BAR, FAINT, INK, LINE_PX, PAPER, QUIET, RIGHT, Canvas, Map, colour_of, column_name, row_name
+from .floor_map import (
+    BAR,
+    BELIEF,
+    FAINT,
+    INK,
+    LINE_PX,
+    PAPER,
+    QUIET,
+    RIGHT,
+    ROBOT,
+    WRONG,
+    Canvas,
+    Map,
+    colour_of,
+    column_name,
+    row_name,
+    text_width,
+)
 from .scene_graph import VIEW_PX, words_in_words
 
 SIZES = ("small", "medium", "large")
 LOCATIONS = ("upper left", "upper centre", "upper right", "left", "centre", "right",
              "lower left", "lower centre", "lower right")
-THINGS = range(3, N_CLASSES)  # what stands in a home, without its shell
+MARKS = {  # what stands for what on a map and in a strip, drawn at a place of a page
+    "start": lambda page, x, y: page.arrow((x - 1, y), 0.4, 14, ROBOT),
+    "robot": lambda page, x, y: page.dial((x, y), 0.4, 7, ROBOT),
+    "sight": lambda page, x, y: page.polygon([(x - 7, y), (x + 7, y - 7), (x + 7, y + 7)], (*ROBOT, 40), (*ROBOT, 160)),
+    "particles": lambda page, x, y: [page.disc((x + dx, y + dy), 1.5, BELIEF) for dx, dy in ((-4, 2), (0, -3), (4, 3))],
+    "belief": lambda page, x, y: page.polygon([(x - 8, y + 1), (x + 6, y - 5), (x + 6, y + 5)], (*BELIEF, 200), BELIEF),
+    "right": lambda page, x, y: page.box(x - 6, y - 6, x + 7, y + 7, None, RIGHT, 3),
+    "wrong": lambda page, x, y: page.box(x - 6, y - 6, x + 7, y + 7, None, WRONG, 3),
+    "hidden": lambda page, x, y: [page.line([(x - d, y + 6), (x + 6 - d, y - 6)], FAINT, 2) for d in (0, 4, 8)]}
+FREE, HIDDEN = N_CLASSES, N_CLASSES + 1  # what a strip shows besides classes
 
 
-def home(world, width_px=640, grid=None, starts=()):
-    """A home from above, the cells of its places, poses as little arrows, and the colours of what stands in it."""
-    plan = Map(world, width_px, grid=grid)
-    plan.starts(starts)
-    return sheet([plan.picture(), legend(THINGS)], columns=1, margin=4)
+def home(world, width_px=640, grid=None, starts=(), shown=None):
+    """A home from above, the cells of its places, poses as little arrows, one of them `shown`; below what is what."""
+    plan, marks = Map(world, width_px, grid=grid), {}
+    if len(starts):
+        plan.starts(starts)
+        marks["start"] = f"the {len(starts)} starts of the test"
+    plan.names()
+    if shown is not None:
+        plan.sight(shown)
+        plan.robot(shown)
+        marks |= {"robot": "the start of the other pictures", "sight": "what is seen from there"}
+    keys = [legend(np.unique(world.label))] + ([legend([], marks)] if marks else [])
+    return sheet([plan.picture(), *keys], columns=1, margin=4)
 
 
 def belief_on_map(world, grid, pooled, particles, pose, width_px=640):
     """Where a filter thinks it is: belief in places (K,), particles (x, y, theta, weight), the true pose."""
     plan = Map(world, width_px, grid=grid)
-    plan.belief(pooled)
     plan.particles(particles)
+    plan.belief(pooled)
     plan.robot(pose)
-    return plan.picture()
+    marks = {"robot": "the robot", "particles": "particles", "belief": "a place, the darker the more belief is in it"}
+    return sheet([plan.picture(), legend([], marks)], columns=1, margin=4)
 
 
 def view(rgb, size_px=256):
@@ -46,40 +81,50 @@ def labels(label_image, size_px=256):
     return view(PALETTE[label_image], size_px)
 
 
-def legend(classes=range(N_CLASSES), size=12):
-    """Colours and names of classes in one line."""
-    font = ImageFont.load_default(size)
-    ends = np.cumsum([0] + [30 + font.getlength(CLASSES[c]) for c in classes])
+def legend(classes=range(N_CLASSES), marks=None, size=12):
+    """Colours and names of classes, then marks (of MARKS) and what they mean, in one line."""
+    entries = [(colour_of(c), CLASSES[c]) for c in classes] + list((marks or {}).items())
+    ends = np.cumsum([0] + [30 + text_width(words, size) for _, words in entries])
     canvas = Canvas(ends[-1], LINE_PX)
-    for x, c in zip(ends, classes, strict=False):
-        canvas.box(x, 3, x + 13, 16, colour_of(c), QUIET)
-        canvas.text((x + 18, 10), CLASSES[c], size)
+    for x, (symbol, words) in zip(ends, entries, strict=False):
+        if symbol in MARKS:
+            MARKS[symbol](canvas, x + 7, 9.5)
+        else:
+            canvas.box(x, 3, x + 13, 16, symbol, QUIET)
+        canvas.text((x + 18, 10), words, size)
     return canvas.picture()
 
 
-def strip(world, dense, width_px=384, height_px=256):
-    """The semantic strip of one view: rays from left to right, distance upwards; behind the last crossing grey.
+def strip(world, dense, width_px=512, height_px=250):
+    """The semantic strip of one view: rays from left to right, distance upwards; behind the last crossing hatched.
 
-    dense : near, far [m] and box of each crossing, (C, D) each: one view of Strip.dense()
+    dense : near, far [m] and box of each crossing, (C, D) each: one view of Strip.dense();  width, height : of the plot
     """
-    near, far, box = dense
-    crossed, rim, H = box >= 0, 34, height_px - 12
+    rays = np.arange(width_px) * len(dense[0]) // width_px
+    near, far, box = (part[rays] for part in dense)
+    crossed, H = box >= 0, height_px
     last = np.where(crossed, near, 0).max(1)
     farthest = max(1, int(np.ceil(last.max() + 0.3)))
-    distance = farthest * (1 - (np.arange(H) + 0.5) / H)[:, None]  # of each row of the picture
-    rows = np.where((distance < last) | (last == 0), 1, 0)[..., None] * (np.array(PAPER) - FAINT) + FAINT
+    distance = farthest * (1 - (np.arange(H) + 0.5) / H)[:, None]  # of each row of the plot
+    shown = np.where((distance < last) | (last == 0), FREE, HIDDEN)
     length = np.where(crossed, np.maximum(far - np.where(crossed, near, 0), 2.5 * farthest / H), -1)
     for d in np.argsort(-length, 1).T:  # the longest first, so that none hides another
         begin, long, label = (a[np.arange(len(d)), d] for a in (near, length, world.label[box]))
         inside = (distance >= begin) & (distance < begin + long)
-        rows[inside] = PALETTE[np.broadcast_to(label, inside.shape)[inside]]
-    canvas = Canvas(width_px, height_px)
-    canvas.paste(Image.fromarray(rows.astype(np.uint8)).resize((width_px - rim - 1, H)), rim, 6)
+        shown[inside] = np.broadcast_to(label, inside.shape)[inside]
+    key = legend(np.unique(shown[shown < FREE]), {"hidden": "hidden by walls"})
+    shown[(shown == HIDDEN) & (np.indices(shown.shape).sum(0) % 7 > 2)] = FREE  # hatched: walls are grey, too
+    x0, y0 = 30, LINE_PX + 5
+    canvas = Canvas(x0 + max(width_px + 1, key.width), y0 + H + 2 * LINE_PX + 10)
+    canvas.paste(Image.fromarray(np.array([*PALETTE, PAPER, FAINT], np.uint8)[shown]), x0, y0)
     for metre in range(0, farthest + 1, 1 + farthest // 8):
-        y = 6 + H * (1 - metre / farthest)
-        canvas.line([(rim - 4, y), (rim, y)], QUIET)
-        canvas.text((rim - 7, y), f"{metre} m", 11, QUIET, "rm")
-    canvas.box(rim, 6, width_px - 1, 6 + H, None, QUIET)
+        y = y0 + H * (1 - metre / farthest)
+        canvas.line([(x0 - 4, y), (x0, y)], QUIET)
+        canvas.text((x0 - 7, y), str(metre), 11, QUIET, "rm")
+    canvas.box(x0 - 1, y0 - 1, x0 + width_px + 1, y0 + H + 1, None, QUIET)
+    canvas.text((0, 9), "distance [m]", 12, QUIET)
+    canvas.text((x0 + width_px / 2, y0 + H + 13), "ray, from left to right", 12, QUIET, "mm")
+    canvas.paste(key, x0, y0 + H + LINE_PX + 8)
     return canvas.picture()
 
 
@@ -97,7 +142,7 @@ def graph(graphs, picture, full=True):
     names = [f"{CLASSES[c]}, {SIZES[s]}, {LOCATIONS[l]}" if full else CLASSES[c] for c, s, l in words]
     taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name shall cover them, nor another name
     for middle, name in zip(middles, names, strict=True):
-        width = ImageFont.load_default(11).getlength(name) + 8
+        width = text_width(name, 11) + 8
         taken = np.vstack([taken, _spot(middle, width, 16, taken, picture.size)])
     plates = taken[len(middles):]
 
@@ -115,7 +160,7 @@ def graph(graphs, picture, full=True):
     return canvas.picture()
 
 
-def ranks(grid, values, true_place=None, n=8, width_px=230):
+def ranks(grid, values, true_place=None, n=8, width_px=230, heads=("rank", "place", "1 / rank")):
     """The n places of the greatest values (K,), reciprocal ranks or beliefs: rank, cell, bearing, value.
 
     The true place is green, and stands last if it is not among them.
@@ -124,17 +169,20 @@ def ranks(grid, values, true_place=None, n=8, width_px=230):
     shown = [(i + 1, p) for i, p in enumerate(order) if (i < n and values[p] > 0) or p == true_place]
     if len(shown) > n:
         shown = [*shown[:n - 1], shown[-1]]
-    canvas = Canvas(width_px, LINE_PX * len(shown) + 2)
+    canvas = Canvas(width_px, LINE_PX * (len(shown) + 1) + 2)
+    x_place, x_bar = 36, max(78, 50 + text_width(heads[1], 11))
+    for x, head in zip((0, x_place, x_bar), heads, strict=True):
+        canvas.text((x, 9), head, 11, QUIET)
     for i, (rank, place) in enumerate(shown):
-        y, ink = LINE_PX * i + 10, RIGHT if place == true_place else INK
+        y, ink = LINE_PX * (i + 1) + 10, RIGHT if place == true_place else INK
         if place == true_place:
             canvas.box(0, y - 9, width_px, y + 9, (*RIGHT, 30))
         ix, iy = divmod(grid.location_of(place), grid.ny)
-        end = 72 + max(1.5, (width_px - 72 - 36) * values[place] / max(values[order[0]], 1e-9))
-        canvas.text((22, y), str(rank) if values[place] > 0 else "", 11, QUIET, "rm")
-        canvas.text((30, y), column_name(ix) + row_name(iy), 12, ink)
-        canvas.arrow((60, y), (place % grid.n_bearings + 0.5) * 2 * np.pi / grid.n_bearings, 14, ink)
-        canvas.polygon([(72, y - 5), (end, y - 5), (end, y + 5), (72, y + 5)], ink if ink == RIGHT else BAR)
+        end = x_bar + max(1.5, (width_px - x_bar - 36) * values[place] / max(values[order[0]], 1e-9))
+        canvas.text((26, y), str(rank) if values[place] > 0 else "", 11, QUIET, "rm")
+        canvas.text((x_place, y), column_name(ix) + row_name(iy), 12, ink)
+        canvas.arrow((x_place + 30, y), (place % grid.n_bearings + 0.5) * 2 * np.pi / grid.n_bearings, 14, ink)
+        canvas.polygon([(x_bar, y - 5), (end, y - 5), (end, y + 5), (x_bar, y + 5)], ink if ink == RIGHT else BAR)
         canvas.text((end + 5, y), f"{values[place]:.2f}", 11, ink)
     return canvas.picture()
 

@@ -22,8 +22,12 @@ def run(args):
     """Print the graph, a node a line, and draw it over the labels."""
     labels = load(args.labels, args.ade20k)
     graph = scene_graph(labels)
-    print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels, {len(graph.words)} nodes, "
-          f"{len(graph.edges)} edges")
+    print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels, "
+          f"{count(len(graph.words), 'node')}, {count(len(graph.edges), 'edge')}")
+    classes = {CLASSES[label] for label, _, _ in words_in_words(graph.words)}
+    if len(classes) == 1:
+        print(f"every node is '{classes.pop()}': if that is not so, the indices are those of another list "
+              + ("(gnl's own: without --ade20k; ADE20K's count from 1)" if args.ade20k else "(ADE20K's: --ade20k)"))
     for i, ((label, size, location), box) in enumerate(zip(words_in_words(graph.words), graph.boxes, strict=True)):
         neighbours = sorted({*graph.edges[graph.edges[:, 0] == i, 1], *graph.edges[graph.edges[:, 1] == i, 0]})
         print(f"{i:3}  {CLASSES[label]}, {draw.SIZES[size]}, {draw.LOCATIONS[location]}  word {graph.words[i]}  "
@@ -32,6 +36,11 @@ def run(args):
     rows, columns = (np.arange(VIEW_PX) * n // VIEW_PX for n in labels.shape)
     draw.save_png(draw.graph(graph, draw.labels(labels[rows[:, None], columns], VIEW_PX)), out)
     print(f"drawn in {out}")
+
+
+def count(n, noun):
+    """A number of things in words: 1 node, 2 nodes."""
+    return f"{n} {noun}" + "s" * (n != 1)
 
 
 def load(path, ade20k=False):

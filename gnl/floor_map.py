@@ -18,9 +18,10 @@ from .strip import cast, slopes
 from .world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M
 
 PAPER, INK, QUIET, BAR, FAINT = (255, 255, 255), (38, 40, 46), (112, 116, 124), (158, 164, 174), (216, 219, 224)
-ROBOT, BELIEF, RIGHT, WRONG, WALLS = (213, 94, 0), (92, 60, 160), (0, 140, 100), (196, 30, 58), (92, 94, 102)
+ROBOT, BELIEF, RIGHT, WRONG = (213, 94, 0), (92, 60, 160), (0, 140, 100), (196, 30, 58)
 TINTS = (250, 242, 226), (232, 243, 236), (234, 240, 249), (250, 236, 232), (242, 237, 248), (241, 243, 226)
 SMOOTH, RIM_PX, LINE_PX = 2, 20, 19  # enlargement; around a map; from one line of text to the next
+NAME_PX, AIR_PX = 13, 5  # names of rooms: size of the letters, room around them
 
 
 class Canvas:
@@ -49,6 +50,11 @@ class Canvas:
         forward, aside = np.array([[1, -1, -0.6, -1], [0, 0.65, 0, -0.65]])[..., None] * length / 2
         ahead = np.array([np.cos(theta), -np.sin(theta)])
         self.polygon(middle + forward * ahead + aside * ahead[::-1] * [1, -1], colour)
+
+    def dial(self, middle, theta, radius, colour):
+        """A disc, and on it the bearing theta."""
+        self.disc(middle, radius, colour, PAPER, 1.5)
+        self.arrow(middle, theta, 1.4 * radius, PAPER)
 
     def text(self, at, words, size=12, colour=INK, anchor="lm", halo=None):
         self.pen.text(_enlarged([at])[0], words, colour, ImageFont.load_default(SMOOTH * size), anchor,
@@ -79,9 +85,10 @@ class Map(Canvas):
         width, height = (high - low) * self.px_per_m
         super().__init__(width_px, height_px or height + 2 * RIM_PX)
         self.shift = np.array([self.width - width, self.height - height]) / 2
+        self.named = self._spots_of_names()
         self._floor()
         self._things()
-        self._names()
+        self.names()
         start, end = self.at((high[0] - 2, high[1])) - (0, 9), self.at(high) - (0, 9)
         self.line([start - (0, 4), start, end, end - (0, 4)])
         self.text(start - (5, 1), "2 m", 11, INK, "rm")
@@ -95,13 +102,11 @@ class Map(Canvas):
         near = cast(self.world, np.array([pose]), 256).dense()[0][0]  # of each ray's crossings; the last is a wall
         reach = np.where(near < np.inf, near, 0).max(1).clip(0, farthest_m)
         rim = pose[:2] + reach[:, None] * _ahead(pose[2] + np.arctan(slopes(256)))
-        self.polygon(self.at([pose[:2], *rim]), (*colour, 40), (*colour, 100))
+        self.polygon(self.at([pose[:2], *rim]), (*colour, 30), (*colour, 130))
 
     def robot(self, pose, colour=ROBOT):
         """A robot, and where it looks."""
-        radius = max(ROBOT_RADIUS_M * self.px_per_m, 7)
-        self.disc(self.at(pose[:2]), radius, colour, PAPER, 1.5)
-        self.arrow(self.at(pose[:2]), pose[2], 1.4 * radius, PAPER)
+        self.dial(self.at(pose[:2]), pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
 
     def starts(self, poses, colour=ROBOT):
         """Many poses, each a little arrow."""
@@ -128,7 +133,8 @@ class Map(Canvas):
     def belief(self, pooled, colour=BELIEF):
         """Belief in each place (K,): a rose in each cell, its petals the bearings, dark where belief is."""
         for place in np.flatnonzero(pooled > 0.002):
-            self.polygon(self.petal(place), (*colour, int(30 + 210 * pooled[place] ** 0.5)))
+            self.polygon(self.petal(place), (*PAPER, 170))  # on dark things, too, one shall see it
+            self.polygon(self.petal(place), (*colour, int(30 + 210 * pooled[place] ** 0.5)), (*colour, 160))
 
     def place(self, place, colour):
         """One place: its cell, and the petal of its bearing."""
@@ -142,6 +148,11 @@ class Map(Canvas):
         middle, g = self.grid.corner_of(place) + np.array([0.5, 0.5, 0]) * self.grid.cell_m, self.grid
         rim = middle[:2] + 0.46 * g.cell_m * _ahead(middle[2] + np.linspace(0, 2 * np.pi / g.n_bearings, 8))
         return self.at([middle[:2], *rim])
+
+    def names(self):
+        """The names of the rooms, once more where something may have covered them."""
+        for middle, name in self.named:
+            self.text(middle, name, NAME_PX, QUIET, "mm", (*PAPER, 160))
 
     def copy(self):
         """The map as it is now, to draw further on."""
@@ -168,33 +179,42 @@ class Map(Canvas):
 
     def _things(self):
         w = self.world
-        corners = w.half[:, None] * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
-        cos, sin = np.cos(w.angle)[:, None], np.sin(w.angle)[:, None]
-        x, y = corners[..., 0] * cos - corners[..., 1] * sin, corners[..., 0] * sin + corners[..., 1] * cos
-        corners = self.at(w.centre[:, None] + np.stack([x, y], -1))
         for i in np.argsort(w.z[:, 1], kind="stable"):  # from above one sees the highest
             if w.label[i] != WALL:
                 flat, hangs = w.z[i, 1] <= STEP_M, w.z[i, 0] >= ROBOT_HEIGHT_M
-                self.polygon(corners[i], colour_of(w.label[i], 70 if flat or hangs else 255),
+                self.polygon(self._outline(i), colour_of(w.label[i], 70 if flat or hangs else 255),
                              colour_of(w.label[i]) if hangs else (*INK, 90))
-            elif w.z[i, 0] <= 0:  # and not the wall above a door
-                self.polygon(corners[i], WALLS, WALLS)
+        walls = np.flatnonzero((w.label == WALL) & (w.z[:, 0] <= 0))  # and not the wall above a door
+        for colour, less_px in ((QUIET, 0), (colour_of(WALL), 1)):  # all rims first: they end where walls meet
+            for i in walls:
+                self.polygon(self._outline(i, less_px), colour)
 
-    def _names(self):
-        """Name each room where the fewest things are in the way."""
-        w = self.world
+    def _outline(self, i, less_px=0):
+        """Corners [px] of a box of the world, somewhat smaller if it should be."""
+        half, angle = (self.world.half[i] - less_px / self.px_per_m).clip(0), self.world.angle[i]
+        ahead, left = _ahead(angle) * half[0], _ahead(angle + np.pi / 2) * half[1]
+        return self.at(self.world.centre[i] + np.array([ahead + left, left - ahead, -ahead - left, ahead - left]))
+
+    def _spots_of_names(self):
+        """The middle [px] of each room's name, in the room, where few things are in the way and no other name is."""
+        w, named = self.world, []
+        taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
         for room in w.plan.get("rooms", []):
             name, parts = str(room.get("type", "")), np.array(cover_polygon(room["polygon"]))
+            size = np.array([text_width(name, NAME_PX) / 2 + AIR_PX, NAME_PX / 2 + AIR_PX]) / self.px_per_m
             low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
             spots = np.stack(np.meshgrid(*map(np.arange, low + 0.1, high, [0.2, 0.2])), -1).reshape(-1, 2)
             spots = spots[box_distance(spots, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1) == 0]
+            spots = spots[(abs(spots[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
             if not len(spots):
-                continue  # a room too small for a name
-            reach = ImageFont.load_default(13).getlength(name) / 2 / self.px_per_m
-            along = (spots[:, None] + np.linspace(-reach, reach, 7)[:, None] * [1, 0]).reshape(-1, 2)
+                continue  # no room for a name
+            along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
             free = box_distance(along, w.centre, w.half, w.angle).min(1).reshape(-1, 7).min(1)
-            free -= 0.05 * np.hypot(*(spots - (low + high) / 2).T)
-            self.text(self.at(spots[free.argmax()]), name, 13, QUIET, "mm", (*PAPER, 160))
+            beyond = box_distance(along, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1).reshape(-1, 7).max(1)
+            best = spots[(free - 2 * beyond - 0.05 * np.hypot(*(spots - (low + high) / 2).T)).argmax()]
+            taken = np.append(taken, [[best, size]], 0)
+            named.append((self.at(best), name))
+        return named
 
 
 def colour_of(label, alpha=255):
@@ -203,6 +223,11 @@ def colour_of(label, alpha=255):
 
 def _ahead(theta):
     return np.stack([np.cos(theta), np.sin(theta)], -1)
+
+
+def text_width(words, size):
+    """Width of a text as it is drawn [px]."""
+    return ImageFont.load_default(SMOOTH * size).getlength(words) / SMOOTH
 
 
 def column_name(ix):

@@ -19,7 +19,8 @@ from .files import write_whole
 from .places import wrap_angle
 from .robot import ACTIONS
 
-WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX = 960, 540, (448, 440), 240
+WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX = 960, 540, (448, 424), 240
+KEY = {"robot": "robot", "sight": "its view", "particles": "particles", "right": "answer, right", "wrong": "or wrong"}
 LOOK_S, MOTION_S, LAST_S, N_MOTION = 1.6, 0.12, 3.2, 3
 DECIDE, DOING = ("turn left", "turn right", "go forward"), ("turning left", "turning right", "going forward")
 
@@ -101,7 +102,8 @@ def gif(shown):
         wall.paste(picture, (0, i * picture.height))
     # The colours that mean something stay as they are: no other one may be near them.
     f = floor_map
-    exact = np.array([*draw.PALETTE, *f.TINTS, f.PAPER, f.INK, f.WALLS, f.ROBOT, f.RIGHT, f.WRONG])
+    pale = (draw.PALETTE + 255.0) / 2  # labels under a graph
+    exact = np.array([*draw.PALETTE, *pale, *f.TINTS, f.PAPER, f.INK, f.QUIET, f.FAINT, f.ROBOT, f.RIGHT, f.WRONG])
     others = np.array(wall.quantize(256 - len(exact)).getpalette()).reshape(-1, 3)
     others = others[abs(others[:, None] - exact).max(2).min(1) > 8]
     palette = Image.new("P", (1, 1))
@@ -121,7 +123,8 @@ def save_gif(looks, world, grid, path):
 def _panels(look, grid):
     """What a look is and says, in pictures: view, graph on labels, ranks, belief."""
     return (draw.view(look.view, VIEW_PX), draw.graph(look.graph, draw.labels(look.labels, VIEW_PX), full=False),
-            draw.ranks(grid, look.states, look.place, 6, 176), draw.ranks(grid, look.pooled, look.place, 6, 168))
+            draw.ranks(grid, look.states, look.place, 6, 176),
+            draw.ranks(grid, look.pooled, look.place, 6, 168, ("rank", "place", "belief")))
 
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
@@ -134,23 +137,33 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     plan.sight(pose)
     plan.path([*(earlier.pose for earlier in looks[:t + 1]), pose])
     plan.robot(pose)
-    page.paste(plan.picture(), 8, 48)
-    page.paste(draw.legend(), 28, 506)
+    page.paste(plan.picture(), 8, 46)
+    page.paste(draw.legend([], KEY), 28, 484)
+    page.paste(draw.legend(), 28, 510)
 
     page.text((28, 28), f"look {t + 1} of {len(looks)}", 20)
     page.text((146, 29), doing, 15, floor_map.ROBOT)
     parts = [("the robot sees", 464, 72), ("it recognises", 712, 72), ("this view says", 464, 348),
-             ("the filter believes", 648, 348), ("next action", 832, 348)]
+             ("the filter believes", 648, 348), ("value of next action", 832, 348)]
     pictures = panel if look is looks[-1] else [*panel, _actions(look.q, action)]
     for (title, x, y), picture in zip(parts, pictures, strict=False):
         page.text((x, y - 13), title, 13)
         page.paste(picture, x, y)
-    page.text((464, 488), f"answer {'right' if right else 'wrong'}", 16, verdict)
-    page.text((580, 489), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
-    for i, other in enumerate(looks):  # how the answers were so far
-        colour = floor_map.FAINT if i > t else floor_map.RIGHT if other.answer == other.place else floor_map.WRONG
-        page.disc((948 - 18 * (len(looks) - 1 - i) - 4, 28), 6, colour)
+    page.text((464, 497), f"answer {'right' if right else 'wrong'}", 16, verdict)
+    page.text((580, 498), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
+    page.text((948 - 22 * len(looks) - 8, 29), "answers", 13, anchor="rm")
+    for i, other in enumerate(looks):  # as they were so far
+        known = [other.answer == other.place] if i <= t else []
+        _tick(page, (948 - 22 * (len(looks) - 1 - i) - 8, 28), *known)
     return page.picture()
+
+
+def _tick(page, at, right=None):
+    """A disc with a tick for a right answer or a cross for a wrong one; pale if there is none yet."""
+    lines = {True: [[(-4, 0), (-1, 3), (4, -3)]], False: [[(-3, -3), (3, 3)], [(-3, 3), (3, -3)]], None: []}[right]
+    page.disc(at, 8, {True: floor_map.RIGHT, False: floor_map.WRONG, None: floor_map.FAINT}[right])
+    for points in lines:
+        page.line(np.add(points, at), floor_map.PAPER, 2)
 
 
 def _actions(q, chosen, width_px=120, line_px=38):

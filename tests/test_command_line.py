@@ -123,7 +123,31 @@ def test_the_picture_goes_where_it_is_told_to(tmp_path):
 def test_a_view_without_a_region_has_an_empty_graph(tmp_path, capsys):
     crumbs = np.add.outer(np.arange(512), np.arange(512)).astype(np.uint8) % 2
     assert run("graph", write(tmp_path / "view.png", crumbs)) == 0
-    assert "512 x 512 pixels, 0 nodes, 0 edges\n" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "512 x 512 pixels, 0 nodes, 0 edges\n" in out
+    assert len(out.splitlines()) == 2
+
+
+@pytest.mark.parametrize(("label", "name"), [(0, "wall"), (9, "other")])
+def test_a_graph_of_one_class_says_that_the_indices_may_be_those_of_another_list(tmp_path, capsys, label, name):
+    assert run("graph", write(tmp_path / "view.png", np.full((64, 64), label, np.uint8))) == 0
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first.endswith("64 x 64 pixels, 1 node, 0 edges")
+    assert f"'{name}'" in second
+    assert "--ade20k" in second
+
+
+def test_one_edge_is_one_edge_and_two_classes_need_no_hint(tmp_path, capsys):
+    halves = np.repeat(np.array([[0, 9]], np.uint8), 256, 1).repeat(512, 0)
+    assert run("graph", write(tmp_path / "view.png", halves)) == 0
+    out = capsys.readouterr().out
+    assert "2 nodes, 1 edge\n" in out
+    assert "--ade20k" not in out
+
+
+def test_our_own_indices_read_as_those_of_ade20k_are_hinted_at(tmp_path, capsys):
+    assert run("graph", write(tmp_path / "view.png", np.full((64, 64), 9, np.uint8)), "--ade20k") == 0
+    assert "without --ade20k" in capsys.readouterr().out.splitlines()[1]
 
 
 def missing(path):

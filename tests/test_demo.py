@@ -1,7 +1,9 @@
 """The demonstration at the smallest scale: it runs, again in less time, after Ctrl-C and after a kill."""
 
+import ast
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -61,8 +63,8 @@ def learned(folder):
 
 
 def table(run):
-    """The lines of a run without times."""
-    return [re.sub(r" +[\d.]+ s$", "", line) for line in run.lines
+    """The lines of a run without times, and without what differs when a part was there before."""
+    return [re.sub(r"(, learned before|, raced meanwhile)? +[\d.]+ s$", "", line) for line in run.lines
             if "the paper" not in line and not line.startswith("  view ")]
 
 
@@ -140,6 +142,42 @@ def test_a_second_run_learns_nothing_and_says_the_same(runs):
     for name in before:
         assert after[name][0] == before[name][0]  # pictures, too
         assert name.parts[0] == "demo" or after[name][1] == before[name][1]
+
+
+def test_a_part_that_was_there_says_so_and_a_new_one_does_not(runs):
+    def old(run):
+        return [line.split()[0] for line in run.lines if ", learned before " in line]
+
+    assert old(runs.second) == ["net", "gcn", "nnql", "scan"]
+    assert old(runs.first) == ["net", "gcn"]
+
+
+def test_the_last_line_names_the_folder_of_the_pictures(runs):
+    assert f"episode.gif in {runs.out / 'demo'} " in runs.first.lines[-1]
+
+
+def test_the_pictures_go_where_they_are_told_to(tmp_path, runs, views, capsys):
+    folder = tmp_path / "my pictures" / "flat"
+    with pytest.raises(SystemExit) as exit:
+        main(["demo", "--plan", str(FLAT), "--views", str(views), "--out", str(runs.out), "--pictures", str(folder),
+              *SMALLEST])
+    assert exit.value.code == 0
+    assert {path.name for path in folder.iterdir()} == PICTURES
+    assert f"episode.gif in {folder} " in capsys.readouterr().out.splitlines()[-1]
+    assert files(runs.out).keys() == runs.second.files.keys()
+
+
+@pytest.mark.skipif(not shutil.which("make"), reason="no make here")
+@pytest.mark.parametrize(("plan", "folder"), [("", "out/demo"), ("a/flat.json", "out/demo-flat"),
+                                              ("/my homes/the old, flat.v2.json", "out/demo-the old, flat.v2")])
+def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
+    words = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
+    made = subprocess.run(["make", "-o", ".venv/ready", words, f"PLAN={plan}", "ARGS=--tests 3", "demo"],
+                          cwd=Path(demo.__file__).parents[1], capture_output=True, text=True, check=True)
+    last = ast.literal_eval(made.stdout.splitlines()[-1])
+    assert last[last.index("--pictures") + 1] == folder
+    assert last[last.index("--plan") + 1] == plan or not plan
+    assert last[-2:] == ["--tests", "3"]
 
 
 def test_the_table_holds_accuracies_and_their_differences_in_pairs(capsys):

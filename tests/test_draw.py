@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import FLAT
 from PIL import Image
 
 from gnl import draw, floor_map
@@ -52,7 +53,7 @@ def test_things_stand_on_the_map_where_they_stand_in_the_home(world):
     plan = floor_map.Map(world, 640)
     assert colour_at(plan.picture(), plan.at([1, 3])) == tuple(PALETTE[BED])
     assert colour_at(plan.picture(), plan.at([4.5, 0.75])) == tuple(PALETTE[SOFA])
-    assert colour_at(plan.picture(), plan.at([3, 0])) == floor_map.WALLS
+    assert colour_at(plan.picture(), plan.at([3, 0])) == tuple(PALETTE[WALL])
 
 
 def test_a_petal_points_to_the_bearings_of_its_place(world, grid):
@@ -96,13 +97,92 @@ def test_labels_and_legend_have_the_colours_of_their_classes():
     assert all(count(draw.legend(), PALETTE[c]) >= 100 for c in range(len(CLASSES)))
 
 
+@pytest.fixture
+def legends(monkeypatch):
+    """The classes of each legend that is drawn, and its marks."""
+    drawn, legend = [], draw.legend
+    monkeypatch.setattr(draw, "legend", lambda classes=range(N_CLASSES), marks=None: (
+        drawn.append((list(classes), marks)), legend(classes, marks))[1])
+    return drawn
+
+
+def classes_in(pixels):
+    """Classes whose very colour is in some pixels."""
+    return [c for c in range(N_CLASSES) if count(pixels, PALETTE[c])]
+
+
+@pytest.mark.parametrize("theta", [0, 90, 140, 300])
+def test_a_strip_names_the_classes_in_it_and_no_other(world, legends, theta):
+    dense = [part[0] for part in cast(world, np.array([[3.0, 2.0, np.radians(theta)]])).dense()]
+    plot = np.array(draw.strip(world, dense, 400, 300))[24:324, 30:430]
+    assert legends == [(classes_in(plot), {"hidden": "hidden by walls"})]
+    assert WALL in legends[0][0]
+
+
+def test_a_home_names_the_classes_in_it_and_the_starts(world, grid, legends):
+    starts = world.free_poses(7, np.random.default_rng(0))
+    picture = draw.home(world, 400, grid, starts, starts[0])
+    (classes, _), (none, marks) = legends
+    assert classes == [WALL, BED, SOFA]
+    assert none == []
+    assert set(marks) == {"start", "robot", "sight"}
+    assert "7" in marks["start"]
+    x, y = floor_map.Map(world, 400, grid=grid).at(starts[0, :2]) + 4  # and the margin of the sheet
+    disc = np.array(picture)[int(y) - 12:int(y) + 12, int(x) - 12:int(x) + 12]
+    assert count(disc, floor_map.ROBOT) > 60
+    assert count(disc, floor_map.PAPER) > 20
+
+
+@pytest.mark.parametrize("mark", draw.MARKS)
+def test_every_mark_stays_clear_of_its_words(mark):
+    picture = np.array(draw.legend([], {mark: "words"}))
+    inked = (picture != 255).any(2).any(0)
+    assert inked[:15].any()
+    assert not inked[15:17].any()
+
+
+def test_no_letter_is_smaller_than_eleven_pixels(world, grid, monkeypatch):
+    sizes, write = [], floor_map.Canvas.text
+    monkeypatch.setattr(floor_map.Canvas, "text", lambda self, at, words, size=12, *rest, **more: (
+        sizes.append(size), write(self, at, words, size, *rest, **more))[1])
+    pose = np.array([3.0, 2.0, 0.0])
+    draw.home(world, 320, grid, [pose], pose)
+    draw.strip(world, [part[0] for part in cast(world, pose[None]).dense()])
+    draw.graph(scene_graph(np.full((64, 64), SOFA)), Image.new("RGB", (200, 200)))
+    draw.sheet([draw.ranks(grid, np.arange(grid.n_places))], ["title"])
+    assert len(sizes) > 40
+    assert min(sizes) >= 11
+
+
+@pytest.mark.parametrize("width", [160, 448, 900])
+def test_names_of_rooms_do_not_touch_one_another(real_home, width):
+    plan = floor_map.Map(real_home, width, grid=PlaceGrid(real_home))
+    assert len(plan.named) == len(real_home.plan.get("rooms", [])) or width == 160
+    boxes = [(middle, np.array([floor_map.text_width(name, floor_map.NAME_PX), floor_map.NAME_PX]) / 2)
+             for middle, name in plan.named]
+    for i, (middle, half) in enumerate(boxes):
+        for other, its_half in boxes[:i]:
+            assert (abs(middle - other) >= half + its_half + floor_map.AIR_PX).any()
+
+
+def test_names_of_rooms_that_lie_open_to_one_another_keep_to_their_rooms():
+    flat = World.load(FLAT)
+    plan = floor_map.Map(flat, 448)
+    rooms = {room["type"]: plan.at(room["polygon"]) for room in flat.plan["rooms"]}
+    for middle, name in plan.named:
+        half = floor_map.text_width(name, floor_map.NAME_PX) / 2
+        assert rooms[name][:, 0].min() < middle[0] - half
+        assert rooms[name][:, 0].max() > middle[0] + half
+
+
 def test_a_wall_stands_in_the_strip_at_its_distance(world):
     dense = [part[0] for part in cast(world, np.array([[3.0, 2.0, 0.0]])).dense()]  # the wall is 2.95 m ahead
-    picture = np.array(draw.strip(world, dense, 384, 412))  # 400 rows for 4 m
-    column = picture[6:406, 34 + 349 // 2]
-    assert (column[400 - 294:-3] == floor_map.PAPER).all()
+    column = np.array(draw.strip(world, dense, 400, 400))[24:424, 30 + 200]  # 400 rows for 4 m
+    assert (column[400 - 294:] == floor_map.PAPER).all()
     assert (column[400 - 304:400 - 296] == PALETTE[WALL]).all()
-    assert (column[3:400 - 306] == floor_map.FAINT).all()
+    behind = column[:400 - 306]
+    assert ((behind == floor_map.FAINT) | (behind == floor_map.PAPER)).all()
+    assert 100 < count(behind, floor_map.FAINT) * 7 / 3 + 10 > count(behind, floor_map.PAPER)
 
 
 def test_a_graph_of_no_node_is_a_pale_picture():
@@ -139,7 +219,7 @@ def test_the_true_place_is_green_wherever_it_ranks(grid, rank):
     values = 1 / np.arange(1, grid.n_places + 1)
     picture = np.array(draw.ranks(grid, values, rank - 1, n=5))
     green = (picture == floor_map.RIGHT).all(-1).any(1)
-    row = min(rank, 5) - 1
+    row = min(rank, 5)  # below the heads
     assert green[row * floor_map.LINE_PX:(row + 1) * floor_map.LINE_PX].any()
     assert not green[:row * floor_map.LINE_PX].any()
     assert not green[(row + 1) * floor_map.LINE_PX:].any()

@@ -78,8 +78,20 @@ def test_a_frame_for_each_look_each_decision_and_some_between(parts, looks, tmp_
 def test_right_answers_are_green_and_wrong_ones_red(parts, looks):
     world, grid, *_ = parts
     pictures = [np.array(picture) for picture, seconds in replay.frames(looks[:1], world, grid)]
-    dot = pictures[0][28, 944]
-    assert tuple(dot) == (floor_map.RIGHT if looks[0].answer == looks[0].place else floor_map.WRONG)
+    dot = pictures[0][20:37, 932:949]
+    right = looks[0].answer == looks[0].place
+    assert (dot == (floor_map.RIGHT if right else floor_map.WRONG)).all(-1).sum() > 100
+    assert (dot[4:12, 4:12] == floor_map.PAPER).all(-1).any()  # a tick or a cross, for eyes that see no red
+
+
+def test_a_tick_is_no_cross_and_what_is_to_come_is_neither():
+    pages = []
+    for known in ([True], [False], []):
+        pages.append(floor_map.Canvas(20, 20))
+        replay._tick(pages[-1], (10, 10), *known)
+    shapes = [(np.array(page.picture()) > 240).all(-1) for page in pages]
+    assert not (shapes[0] == shapes[1]).all()
+    assert shapes[2].sum() < min(shapes[0].sum(), shapes[1].sum())
 
 
 def test_an_episode_of_one_look_is_one_frame(parts):
