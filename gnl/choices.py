@@ -13,7 +13,7 @@ from .episode import Rules
 from .gcn import GCN
 from .nn import softmax
 from .nnql import SAME
-from .particles import FLOOR
+from .particles import FLOOR, ParticleFilter
 from .ranks import reciprocal_ranks
 from .robot import N_ACTIONS, Motion
 
@@ -121,9 +121,10 @@ CHOICES = [
     Choice("likelihood of a particle", "reciprocal rank", Rules(likelihood=by_rank)),
     Choice("floor of the likelihood", "1e-2", constants={"episode.FLOOR": 1e-2}),
     Choice("floor of the likelihood", "1e-4", constants={"episode.FLOOR": 1e-4}),
-    Choice("motion noise of the filter", "none", constants={"particles.STD_M": 0.0, "particles.STD_RAD": 0.0}),
-    Choice("motion noise of the filter", "10 cm, 0.1 rad", constants={"particles.STD_M": 0.1,
-                                                                     "particles.STD_RAD": 0.1}),
+    Choice("motion noise of the filter", "none", Rules(filter=partial(ParticleFilter, std=(0.0, 0.0)))),
+    Choice("motion noise of the filter", "10 cm, 0.1 rad", Rules(filter=partial(ParticleFilter, std=(0.1, 0.1)))),
+    Choice("guided start", "10 places", Rules(filter=partial(ParticleFilter, n_start_places=10))),
+    Choice("guided start", "30 places", Rules(filter=partial(ParticleFilter, n_start_places=30))),
     Choice("noise of the odometry", "none", motion=Motion(std_m=0.0, std_rad=0.0)),
     Choice("answer, pooling of particles to places", "max", Rules(pooling="max")),
     Choice("actions: turn", "60 degrees", motion=Motion(turn_rad=np.pi / 3)),

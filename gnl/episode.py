@@ -86,6 +86,7 @@ class Rules:
 
     length: int = LENGTH
     likelihood: Callable = probability
+    filter: Callable = ParticleFilter
     state: Callable = view_ranks
     reward: Callable = every_step
     # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
@@ -131,7 +132,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
         if belief:
             senses.timed("filter", _update, belief, odometry, fit)
         else:
-            belief = senses.timed("filter", ParticleFilter, grid, fit, filtering)
+            belief = senses.timed("filter", rules.filter, grid, fit, filtering)
         pooled = senses.timed("filter", belief.belief, grid.n_places, rules.pooling)
         seen, states = states, senses.timed("ranks", rules.state, scores, pooled, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)

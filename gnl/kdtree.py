@@ -2,8 +2,9 @@
 
 Nearest-neighbour Q-learning asks of every view: which of my memories are most like this? A KD-tree answers
 without looking at all of them. It cuts space in two, each half again, and so on, and never opens a box that
-lies farther away than what it has found already. In 2-D that skips nearly everything. In 300-D no box is far
-from anything, and brute force wins; `RankIndex` shows what it takes to do better there.
+lies farther away than what it has found already. In 2-D that skips nearly everything. In 300-D the boxes of points
+that are spread out are far from nothing. Rankings of views are kinder, but a box costs as much to measure as a point,
+and one matrix product with all points is faster; `RankIndex` shows what it takes to do better there.
 
 symbol     shape      meaning
 points     (n, dim)   all stored vectors in order of birth, float32; a point's id is its row

@@ -13,7 +13,7 @@ import numpy as np
 
 N_PARTICLES = 5000
 N_START_PLACES = 3
-STD_M, STD_RAD = 0.03, 0.03  # CHOICE: motion noise of the filter; the paper names none
+STD = 0.03, 0.03  # CHOICE: motion noise of the filter, m and rad; the paper names none
 FLOOR = 1e-3  # CHOICE: likelihood of a place that the classifier rules out
 
 
@@ -23,13 +23,15 @@ class ParticleFilter:
     The filters share the noise of their motion: within a filter particles are independent, and that is all it needs.
     """
 
-    def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES):
+    def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES,
+                 std=STD):
         """Guided start: particles uniform in the places that fit the first view best, weighed by how they fit.
 
         likelihood : (B, K), of each place given the first view
+        std        : of the motion noise, metres (forward and aside) and radians
         """
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
-        self.grid, self.rng = grid, rng
+        self.grid, self.rng, self.std = grid, rng, std
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
         # In k blocks, one a place: systematic resampling takes every n-th particle, and would alias with turns.
         place = best.take(np.arange(M) * k // M, 1)
@@ -42,7 +44,7 @@ class ParticleFilter:
     def predict(self, odometry):
         """Move all particles as odometry says, (B, 2) forward [m] and turn [rad], and spread them by its noise."""
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
-        noise *= np.float32([[STD_M], [STD_M], [STD_RAD]])
+        noise *= np.float32([[self.std[0]], [self.std[0]], [self.std[1]]])
         # One filter at a time, here and below: its particles stay near the processor.
         for b, (forward, turn) in enumerate(np.asarray(odometry, np.float32)):
             self.x[b] += forward * np.cos(self.theta[b]) + noise[0]

@@ -7,6 +7,7 @@ boxes that cover it. Everything downstream (collision, rays, views) sees boxes o
     angle  (N,)   rad                    of its first side, counter-clockwise from +x
     z      (N, 2) m                      bottom and top
     label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1
+    blocks, carries (N,) bool            what a robot cannot pass; what has something standing on it or hanging above
 """
 
 import zlib
