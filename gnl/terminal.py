@@ -84,6 +84,9 @@ def guarded(program, run, *args):
     status, line = 0, None
     try:
         run(*args)
+    except BrokenPipeError:  # who reads the output has read enough: `... | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(128 + signal.SIGPIPE)
     except (ValueError, OSError) as error:
         status, line = 2, str(error).replace("\n", " ")
     except BrokenExecutor:

@@ -119,6 +119,15 @@ def test_a_fault_of_our_own_is_not_hidden():
         guarded("python -m gnl", stop, KeyError("rgb"))
 
 
+def test_who_stops_reading_hears_no_complaint():
+    code = "from gnl.terminal import guarded; guarded('test', lambda: [print('line', flush=True) for _ in range(9999)])"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(10) == 128 + signal.SIGPIPE
+
+
 @pytest.mark.parametrize("end", [ValueError("a mistake"), KeyboardInterrupt()], ids=["mistake", "ctrl-c"])
 def test_on_a_terminal_the_last_words_stand_on_a_line_of_their_own(monkeypatch, end):
     stream = Terminal()
