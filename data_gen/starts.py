@@ -1,7 +1,7 @@
-"""Start poses with a cross-view gap: robots learn where they will not be tested (section V-A).
+"""Start poses with a cross-view gap: robots learn where they will not be tested (section III).
 
 Test starts are uniform in free space. A training start is drawn again until it lies farther than T_xy from the
-nearest test start and is turned by more than T_theta from it, so that no view of a test was ever learned from.
+nearest test start and is turned by more than T_theta from it, so that no episode of learning begins where a test does.
 
     T_xy [m], T_theta [rad]   the domain gap     n starts, each (x [m], y [m], theta [rad])
 """

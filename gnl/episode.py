@@ -29,7 +29,7 @@ class Senses:
 
     world: object
     net: dict | None  # weights of the segmentation net; None: true labels
-    gcn: object
+    gcn: object  # anything with scores(SceneGraphs) -> (B, K)
     noise: float = 1.0
     seconds: dict = field(default_factory=dict)
     views: int = 0

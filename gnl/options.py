@@ -12,6 +12,8 @@ fixed sequences, of which the options are three:
     s''    what was seen after a was done in s'      d   steps to go, of L
     r      1 / rank of the true place in s'': dense and hardly noisy, where right or wrong is mostly luck
     k      many, for values differ little from view to view, and what each of them says is noisy
+
+Where there is little experience the race decides alone, and Ours+ is a scan.
 """
 
 import numpy as np

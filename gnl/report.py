@@ -182,6 +182,7 @@ def adaptation(results):
     text = f"DA - Ours {' '.join(interval(gain))}"
     if early:
         text += f"; where an early one was chosen ({len(early)} cells) {' '.join(interval(early))}"
+    text += ". The best of ten equal ones looks better than they are: part of what Oracle gains is luck"
     return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
 
 
