@@ -172,8 +172,8 @@ def test_the_pictures_go_where_they_are_told_to(tmp_path, runs, views, capsys):
                                               ("/my homes/the old, flat.v2.json", "out/demo-the old, flat.v2")])
 def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
     words = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
-    made = subprocess.run(["make", "-o", ".venv/ready", words, f"PLAN={plan}", "ARGS=--tests 3", "demo"],
-                          cwd=Path(demo.__file__).parents[1], capture_output=True, text=True, check=True)
+    command = ["make", "--no-print-directory", "-o", ".venv/ready", words, f"PLAN={plan}", "ARGS=--tests 3", "demo"]
+    made = subprocess.run(command, cwd=Path(demo.__file__).parents[1], capture_output=True, text=True, check=True)
     last = ast.literal_eval(made.stdout.splitlines()[-1])
     assert last[last.index("--pictures") + 1] == folder
     assert last[last.index("--plan") + 1] == plan or not plan
