@@ -1,5 +1,7 @@
 """Other choices: each can be put in the place of ours and is taken back; what is measured is what the page says."""
 
+import contextlib
+import itertools
 import json
 from pathlib import Path
 
@@ -13,7 +15,7 @@ from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, BruteForce, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Senses
-from gnl.experiment import arrays, to_bytes
+from gnl.experiment import to_bytes
 from gnl.gcn import GCN
 from gnl.kdtree import KDTree
 from gnl.nn import softmax
@@ -65,7 +67,7 @@ def test_a_name_that_is_no_constant_is_not_made_one():
 
 
 def test_choices_have_names_of_their_own_and_stand_on_the_page():
-    names = [ablate.name_of(choice, CELL) for choice in (OURS, *CHOICES)]
+    names = [ablate.name_of(choice, cell) for choice in (OURS, *CHOICES) for cell in ablate.CELLS]
     assert len(set(names)) == len(names)
     rows = [line for line in PAGE.read_text().splitlines() if line.startswith("| ")]
     points = {row.split(" | ")[0].removeprefix("| ") for row in rows}
@@ -89,12 +91,30 @@ def test_corners_join_regions_that_sides_do_not():
     assert sorted(zip(label.tolist(), area.tolist(), boxes.tolist(), strict=True)) == [
         (0, 192, [0, 0, 24, 16]), (3, 128, [0, 0, 16, 16]), (4, 64, [16, 8, 24, 16])]
     assert view.tolist() == [0, 0, 0]
+    several = choices.touching_at_corners(np.concatenate([labels, labels[:, ::-1]]))
+    assert several[0].tolist() == [0, 0, 0, 1, 1, 1]
+    np.testing.assert_array_equal(several[2][:3], area)
     assert len(regions(labels)[0]) == 5  # two beds, and the wall is in two parts
 
 
 def test_the_sparse_reward_comes_at_the_end():
     right = np.array([True, False, True, False])
     assert choices.at_the_end(right, None, np.array([False, False, True, True])).tolist() == [0, 0, 1, -1]
+
+
+def test_a_likelihood_by_rank_is_the_reciprocal_rank_and_a_floor_below_it():
+    np.testing.assert_allclose(choices.by_rank(SCORES), reciprocal_ranks(SCORES) + 1e-3, rtol=1e-6)
+    assert choices.by_rank(SCORES)[0].argmax() == 1
+
+
+def test_of_equal_actions_the_first_is_taken_and_of_others_the_best():
+    assert choices.first_of_equals(np.array([[1.0, 2, 2], [3, 3, 3], [0, -1, 5]]), None).tolist() == [1, 0, 2]
+
+
+def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
+    brute = BruteForce(3)
+    brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))
+    assert brute.find(np.float32([[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0.01, 1]])).tolist() == [1, 0, -1, -1]
 
 
 def test_brute_force_answers_like_the_tree():
@@ -104,38 +124,65 @@ def test_brute_force_answers_like_the_tree():
     for part in np.array_split(points, 3):
         np.testing.assert_array_equal(brute.add(part), tree.add(part))
     queries = np.concatenate([rng.random((6, 5), np.float32), points[:4]])
-    for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2)):
+    for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2), (4, None)):
         mine, trees = brute.query(queries, k, n_first), tree.query(queries, k, n_first)
         np.testing.assert_allclose(mine[0], trees[0], atol=1e-3)
         np.testing.assert_array_equal(mine[1], trees[1])
 
 
-def made_up(out, monkeypatch):
-    """Outcomes of ours, of true labels and of one more choice in two cells."""
-    rng, more = np.random.default_rng(0), Choice("edges", "none")
+HIGHER, NO_EDGES = Choice("camera height", "2 m", true_labels=True), Choice("edges", "none")
+
+
+def write_outcomes(out, choices):
+    """Made-up outcomes of choices in two cells."""
+    rng = np.random.default_rng(0)
+    for choice, cell in itertools.product(choices, ablate.CELLS):
+        tests = {name: {"place": ["".join(rng.choice(["0", "1"], 50)) for _ in range(5)]} for name in ("MV", "Ours")}
+        path = path_of(out, ablate.name_of(choice, cell))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(to_bytes({"name": ablate.name_of(choice, cell), "tests": tests}))
+
+
+@pytest.mark.parametrize(("choice", "beside"), [(NO_EDGES, OURS), (TRUE_LABELS, OURS), (HIGHER, TRUE_LABELS)])
+def test_an_effect_is_the_difference_in_pairs_from_our_choice_and_with_true_labels_from_ours_with_them(
+        tmp_path, monkeypatch, choice, beside):
     monkeypatch.setattr(ablate, "CELLS", ablate.CELLS[:2])
-    for choice, share in ((OURS, 0.5), (TRUE_LABELS, 0.6), (more, 0.4)):
-        for cell in ablate.CELLS:
-            tests = {name: {"place": ["".join("01"[int(x)] for x in rng.random(50) < share)] * 5}
-                     for name in ("MV", "Ours")}
-            path = path_of(out, ablate.name_of(choice, cell))
-            path.parent.mkdir(exist_ok=True)
-            path.write_bytes(to_bytes({"name": ablate.name_of(choice, cell), "tests": tests}))
-    return more
+    write_outcomes(tmp_path, [OURS, TRUE_LABELS, NO_EDGES, HIGHER])
+    ours, row = ablate.effects(tmp_path, [OURS, choice])
+    assert row[:3] == [choice.point, choice.other, beside.other]
+    for column, method in ((3, "MV"), (4, "Ours")):
+        def right(choice, method=method):
+            files = [path_of(tmp_path, ablate.name_of(choice, cell)).read_bytes() for cell in ablate.CELLS]
+            return np.array([one == "1" for file in files for one in json.loads(file)["tests"][method]["place"][-1]])
+
+        d, low, high = (100 * value for value in paired_difference(right(choice), right(beside)))
+        assert row[column] == f"{d:+.1f} [{low:+.1f}, {high:+.1f}]"
+        assert ours[column] == f"{100 * right(OURS).mean():.1f}"
 
 
-def test_an_effect_is_the_difference_in_pairs_from_our_choice(tmp_path, monkeypatch):
-    more = made_up(tmp_path, monkeypatch)
-    rows = ablate.effects(tmp_path, [OURS, TRUE_LABELS, more])
+def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_once(tmp_path, monkeypatch, capsys):
+    asked, page = [], tmp_path / "page.md"
+    page.write_text("| open | effect |\n| edges | ? |\n| neighbours | ? |\n")
 
-    def right(choice):
-        return np.concatenate([arrays(json.loads(path_of(tmp_path, ablate.name_of(choice, cell)).read_bytes())
-                                      ["tests"]["Ours"]["place"])[:, -1] for cell in ablate.CELLS])
+    def run_jobs(out, jobs, *_):
+        asked.extend((choice, cell) for _, choice, cell, *_ in jobs.values())
+        assert list(jobs) == [ablate.name_of(choice, cell) for choice, cell in asked]
+        write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
-    d, low, high = (100 * value for value in paired_difference(right(more), right(OURS)))
-    assert rows[2][:3] == ["edges", "none", "ours"]
-    assert rows[2][4] == f"{d:+.1f} [{low:+.1f}, {high:+.1f}]"
-    assert rows[0][4] == f"{100 * right(OURS).mean():.1f}"
+    for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_arrays", lambda _: [None]),
+                        ("executor", contextlib.nullcontext), ("run_jobs", run_jobs)):
+        monkeypatch.setattr(ablate, name, value)
+    for _ in range(2):  # the second one has nothing to do
+        with pytest.raises(SystemExit) as exit:
+            main(["ablate", "--out", str(tmp_path / "out"), "--points", "neighbours", "labels of the views",
+                  "--page", str(page)])
+        assert exit.value.code == 0
+        neighbours = [choice for choice in CHOICES if choice.point == "neighbours"]
+        assert asked == list(itertools.product([OURS, TRUE_LABELS, *neighbours], ablate.CELLS))
+    assert capsys.readouterr().out.count("| neighbours | k = 16 | ours |") == 2
+    lines = page.read_text().splitlines()
+    assert lines[1] == "| edges | ? |"
+    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == ["k = 1", "k = 16", "k = 64"]
 
 
 def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():

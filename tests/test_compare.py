@@ -115,6 +115,12 @@ def test_as_many_episodes_as_are_needed_show_the_difference_four_times_in_five()
     assert np.mean(shown) == pytest.approx(0.8, abs=0.05)
 
 
+def test_no_fewer_episodes_would_do():
+    for difference, std in ((0.1, 0.5), (0.025, 0.7), (0.05, 0.3)):
+        n, needed = episodes_needed(difference, std), stats.norm.ppf(0.975) + stats.norm.ppf(0.8)
+        assert difference * np.sqrt(n - 1) / std < needed <= difference * np.sqrt(n) / std + 1e-5
+
+
 def test_the_papers_own_numbers_have_the_means_that_were_seen_in_them():
     cells = table_1()
     assert len(cells) == 75

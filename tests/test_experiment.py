@@ -2,6 +2,8 @@
 
 import itertools
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,13 +12,27 @@ from data_gen.rooms import make_home
 from data_gen.starts import starts_of
 from gnl import episode, experiment, planners
 from gnl.episode import Senses
-from gnl.experiment import N_CHECKPOINTS, Cell, adapted, arrays, curve, latest_best, right, run_cell, strings, to_bytes
+from gnl.experiment import (
+    GAPS_DEG,
+    GAPS_M,
+    N_CHECKPOINTS,
+    Cell,
+    adapted,
+    arrays,
+    curve,
+    latest_best,
+    right,
+    run_cell,
+    strings,
+    to_bytes,
+)
 from gnl.gcn import GCN
+from gnl.learned import digest, fingerprint
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
 
 CELL = Cell(800, 0.2, 10, 3)
-N_TESTS = 40
+N_TRAINING, N_TESTS, N_VALIDATION = 20, 12, 4
 
 
 @pytest.fixture(scope="module")
@@ -24,56 +40,122 @@ def parts():
     """Senses of true labels and a GCN that has learned nothing, and starts."""
     home = make_home(CELL.world)
     senses = Senses(home, None, GCN(PlaceGrid(home).n_places, np.random.default_rng(0), hidden=8))
-    return senses, starts_of(CELL, home, 20, N_TESTS, 4)
+    return senses, starts_of(CELL, home, N_TRAINING, N_TESTS, N_VALIDATION)
+
+
+def live(cell, parts):
+    """Result and costs of a cell whose robots learn two by two; of each part what it was given and what it found."""
+    given, found = ({"train_nnql": [], "race": [], "run_all": []} for _ in range(2))  # (starts, seed) of each call
+
+    def watched(function):
+        def call(senses, robot, grid, *args, **options):
+            given[function.__name__].append(args[-2:])
+            found[function.__name__].append(function(senses, robot, grid, *args, **options))
+            patch.setattr(episode, "SIDE_BY_SIDE", 64)  # training comes first
+            return found[function.__name__][-1]
+        return call
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(episode, "SIDE_BY_SIDE", 2)  # so that its checkpoints differ
+        for name in given:
+            patch.setattr(episode, name, watched(getattr(episode, name)))
+        return *run_cell(cell, replace(parts[0], seconds={}, views=0), parts[1], {"tests": N_TESTS}), given, found
 
 
 @pytest.fixture(scope="module")
-def outcome(parts):
-    return run_cell(CELL, *parts)
+def lived(parts):
+    return live(CELL, parts)
 
 
-def test_a_cell_is_a_function_of_its_arguments(parts, outcome):
-    again, _ = run_cell(CELL, *parts)
-    assert to_bytes(again) == to_bytes(outcome[0])
+def test_a_cell_is_a_function_of_its_arguments(parts, lived):
+    assert to_bytes(live(CELL, parts)[0]) == to_bytes(lived[0])
 
 
-def test_another_seed_is_another_cell(parts, outcome):
-    other, _ = run_cell(Cell(800, 0.2, 10, 4), *parts)
-    assert other["tests"] != outcome[0]["tests"]
+def test_another_seed_is_another_cell(parts, lived):
+    assert live(Cell(800, 0.2, 10, 4), parts)[0]["tests"] != lived[0]["tests"]
 
 
-def test_equal_actions_have_equal_outcomes_so_pairs_are_pairs(parts, outcome):
-    """Scan of the cell, run again as a planner of another name under the cell's seed for tests."""
+def test_equal_actions_have_equal_outcomes_so_pairs_are_pairs(parts, lived):
+    """Scan and MV of the cell, run again: Scan as a planner of another name, under the seed that all tests had."""
     senses, starts = parts
-    result, _ = outcome
-    _, _, testing, _ = np.random.SeedSequence(CELL.entropy).spawn(4)
-    sequence = result["sequence"]
+    result, _, given, _ = lived
+    sequence, testing = result["sequence"], given["run_all"][0][1]
 
     def same_in_other_words(step, states, rng):
         rng.random(7)
         return np.full(len(states), sequence[step])
 
     grid = PlaceGrid(senses.world)
-    record = episode.run_all(senses, Robot(senses.world), grid, same_in_other_words, starts["tests"], testing)
-    assert experiment.outcomes(grid, record) == result["tests"]["Scan"]
-    chance = episode.run_all(senses, Robot(senses.world), grid, planners.chance, starts["tests"], testing)
-    assert experiment.outcomes(grid, chance) == result["tests"]["MV"]
-    moved_alike = (chance.actions == sequence).all(1)
-    assert (chance.answers[moved_alike] == record.answers[moved_alike]).all()
+    for name, plan in (("Scan", same_in_other_words), ("MV", planners.chance)):
+        record = episode.run_all(senses, Robot(senses.world), grid, plan, starts["tests"], testing)
+        assert experiment.outcomes(grid, record) == result["tests"][name]
 
 
-def test_all_methods_share_the_first_look(outcome):
-    result, _ = outcome
+def test_what_is_learned_never_comes_from_a_test_nor_a_choice_from_a_test_or_its_luck(parts, lived):
+    starts, given = parts[1], lived[2]
+    np.testing.assert_array_equal(given["train_nnql"][0][0], starts["training"])
+    np.testing.assert_array_equal(given["race"][0][0], starts["training"])
+    tests, validation = given["run_all"][:3 + N_CHECKPOINTS], given["run_all"][3 + N_CHECKPOINTS:]
+    assert all(np.array_equal(poses, starts["tests"]) for poses, _ in tests)
+    assert all(np.array_equal(poses, starts["validation"]) for poses, _ in validation)
+    seeds = [{seed.spawn_key for _, seed in calls} for calls in (given["train_nnql"], given["race"], tests, validation)]
+    assert [len(of) for of in seeds] == [1, 1, 1, 1]  # all tests have the same luck
+    assert len(set.union(*seeds)) == 4
+
+
+def test_scan_is_the_winner_of_the_race_and_ours_plus_goes_on_with_one_action(lived):
+    ((sequences, _),), (_, scan, ours_plus, *_) = (lived[3][name] for name in ("race", "run_all"))
+    assert lived[0]["sequence"] == sequences[0].tolist()
+    assert (scan.actions == sequences[0]).all()
+    assert (ours_plus.actions == ours_plus.actions[:, :1]).all()
+
+
+def test_all_methods_share_the_first_look(lived):
+    result = lived[0]
     assert len({o["place"][0] for o in (*result["tests"].values(), *result["checkpoints"])}) == 1
     assert right(result)["SV"].tolist() == arrays(result["tests"]["Scan"]["place"])[:, 0].tolist()
 
 
-def test_outcomes_can_be_written_and_read(outcome):
-    result, costs = outcome
+def test_ten_checkpoints_are_tested_from_the_first_to_that_of_all_that_was_learned(parts, lived):
+    (senses, starts), (result, costs, given, found) = parts, lived
+    (store,) = found["train_nnql"]
+    assert len(result["checkpoints"]) == len(result["validation"]) == len(store.log) == N_CHECKPOINTS
+    for last, now in zip(store.at(N_CHECKPOINTS - 1).values, store.values, strict=True):
+        np.testing.assert_array_equal(last, now)
+    assert costs["pairs"] == sum(map(len, store.values)) > 0
+    grid = PlaceGrid(senses.world)
+    for kind, name, seed in (("tests", "checkpoints", given["run_all"][0][1]),
+                             ("validation", "validation", given["run_all"][-1][1])):
+        again = [experiment.outcomes(grid, episode.run_all(senses, Robot(senses.world), grid,
+                                                           planners.greedy(store.at(i)), starts[kind], seed))
+                 for i in (0, N_CHECKPOINTS - 1)]
+        assert [result[name][0], result[name][-1]] == again
+    assert result["checkpoints"][0] != result["checkpoints"][-1]
+
+
+def test_outcomes_and_costs_can_be_written_and_read(lived):
+    result, costs, given, _ = lived
     assert json.loads(to_bytes(result)) == result
     assert json.loads(to_bytes(costs)) == costs
-    assert costs["views"] > 0
-    assert costs["peak MB"] > 10
+    assert to_bytes({"b": 1, "a": 2}) == to_bytes({"a": 2, "b": 1})
+    assert costs["views"] > 5 * sum(len(poses) for poses, _ in given["train_nnql"] + given["run_all"])
+    assert 0 < sum(costs["of stages"].values()) < costs["seconds"] < 100
+    assert 0 < costs["of processor"] < 100
+    assert 10 < costs["peak MB"] < 10_000
+
+
+def test_outcomes_say_what_they_were_made_from(parts, lived):
+    result, senses = lived[0], parts[0]
+    assert result["settings"] == {"tests": N_TESTS}
+    home, gcn = digest(senses.world.plan), fingerprint(senses.gcn.params)
+    assert result["made from"] == {"home": home, "gcn": gcn, "net": None}
+
+
+def test_a_right_place_with_a_wrong_bearing_is_a_right_location():
+    grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
+    answers, places = np.array([[5, 5], [5, 17], [5, 6]]), np.array([[5, 6], [17, 17], [5, 18]])
+    record = SimpleNamespace(answers=answers, places=places, correct=answers == places)
+    assert experiment.outcomes(grid, record) == {"place": ["101", "010"], "location": ["101", "110"]}
 
 
 def test_strings_and_arrays_are_each_others_inverse():
@@ -91,35 +173,39 @@ def test_of_equal_checkpoints_the_latest_is_taken(values, best):
 
 def made_up(checkpoints, validation):
     """A result of 4 tests and 2 looks: answers after the last look of each checkpoint, on tests and validation."""
-    def of(last):
-        return {"place": ["0110", last], "location": ["1111", "1111"]}
+    def of(first, last):
+        return {"place": [first, last], "location": [last, first]}
 
-    return {"cell": {"world": 800}, "tests": {"MV": of("0011"), "Scan": of("1111")},
-            "checkpoints": [of(last) for last in checkpoints], "validation": [of(last) for last in validation]}
+    return {"cell": {"world": 800}, "tests": {"MV": of("0110", "0011"), "Scan": of("0110", "1111")},
+            "checkpoints": [of("0110", last) for last in checkpoints],
+            "validation": [of("1110" if i == 0 else "0000", last) for i, last in enumerate(validation)]}
 
 
 def test_adaptation_looks_at_validation_alone_and_the_oracle_at_the_tests():
-    result = made_up(["1111", "0000", "0001"], ["0001", "0111", "0111"])
+    result = made_up(["0000", "1111", "0111", "0001"], ["0001", "0111", "0111", "0011"])
     assert adapted(result) == 2
     found = {name: values.mean() for name, values in right(result).items()}
-    assert found == {"SV": 0.5, "MV": 0.5, "Scan": 1.0, "Ours": 0.25, "DA": 0.25, "Oracle": 1.0}
-    assert right(result, checkpoint=1)["Ours"].mean() == 0.0
-    assert right(result, "location")["MV"].mean() == 1.0
+    assert found == {"SV": 0.5, "MV": 0.5, "Scan": 1.0, "Ours": 0.25, "DA": 0.75, "Oracle": 1.0}
+    assert right(result, checkpoint=0)["Ours"].mean() == 0.0
+
+
+def test_locations_are_those_of_the_checkpoints_that_the_places_chose():
+    result = made_up(["0000", "1111", "0111", "0001"], ["0001", "0111", "0111", "0011"])
+    for i, outcome in enumerate(result["checkpoints"]):
+        outcome["location"] = ["0000", "0001"[i:] + "1" * i]
+    result["tests"]["Scan"]["location"] = ["0000", "1000"]
+    found = {name: "".join("01"[int(x)] for x in values) for name, values in right(result, "location").items()}
+    assert found == {"SV": "0011", "MV": "0110", "Scan": "1000", "Ours": "1111", "DA": "0111", "Oracle": "0011"}
 
 
 def test_a_curve_has_a_row_a_cell_and_a_column_a_checkpoint():
     of_cells = curve([made_up(["1111", "0000", "0001"], ["0001"] * 3), made_up(["0000", "0011", "1111"], ["0001"] * 3)])
     assert of_cells["Ours"].tolist() == [[1.0, 0.0, 0.25], [0.0, 0.5, 1.0]]
     assert of_cells["MV"].tolist() == [[0.5] * 3] * 2
-
-
-def test_a_cell_keeps_ten_checkpoints_the_last_of_all_it_learned(outcome):
-    result, costs = outcome
-    assert len(result["checkpoints"]) == N_CHECKPOINTS
-    assert 0 < costs["pairs"] <= 20 * episode.LENGTH
+    assert of_cells["Scan"].tolist() == [[1.0] * 3] * 2
 
 
 def test_each_cell_has_numbers_and_a_name_of_its_own():
-    cells = [Cell(*of) for of in itertools.product((800, 801), (0.2, 1.0), (10, 90), (0, 1))]
+    cells = [Cell(*of) for of in itertools.product((800, 801), GAPS_M, GAPS_DEG, (0, 1))]
     assert len({cell.name for cell in cells}) == len({tuple(cell.entropy) for cell in cells}) == len(cells)
     assert Cell(800, 0.2, 10, 0).name == "800-0.2m-10deg-seed0"

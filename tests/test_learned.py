@@ -5,9 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gnl import learned, segnet
+from data_gen.rooms import make_home
+from gnl import episode, gcn, learned, segnet
+from gnl.episode import Senses
 from gnl.files import load_arrays, save_arrays
+from gnl.gcn import GCN
+from gnl.nnql import NNQL
+from gnl.places import PlaceGrid
+from gnl.robot import Robot
 
+STARTS = np.array([[1.0, 2, 0], [3, 2, 1]])
 VIEWS = np.random.default_rng(0).integers(0, 256, (16, 64, 64, 3), np.uint8), np.zeros((16, 64, 64), np.uint8)
 
 
@@ -51,6 +58,16 @@ def test_the_order_of_settings_does_not_matter():
     assert len(learned.digest({})) == 8
 
 
+def test_other_arrays_have_another_fingerprint_and_their_order_does_not_matter():
+    a, b = np.arange(6.0), np.zeros(3)
+    one = learned.fingerprint({"a": a, "b": b})
+    assert one == learned.fingerprint({"b": b.copy(), "a": a.copy()})
+    nearly = np.append(a[:-1], np.nextafter(a[-1], 9))
+    others = [{"a": b, "b": a}, {"a": a.reshape(2, 3), "b": b}, {"a": a, "b": b.astype(np.float32)}, {"a": a},
+              {"a": a, "c": b}, {"a": nearly, "b": b}, {"a": a, "b": b.view(np.int64)}]
+    assert len({one, *map(learned.fingerprint, others)}) == 1 + len(others)
+
+
 def test_learning_that_is_interrupted_is_begun_again(tmp_path):
     def interrupted(path):
         raise KeyboardInterrupt
@@ -89,13 +106,102 @@ def test_a_damaged_file_is_named_and_left_as_it_is(tmp_path, damage):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_net_from_its_file_is_the_net_that_was_learnt(tmp_path):
-    learnt, loaded = (learned.segmentation_net(tmp_path, VIEWS, "views", 1, seed=0, stage=silent) for _ in range(2))
+def never(*_args, **_options):
+    raise AssertionError("learnt again")
+
+
+def test_a_net_from_its_file_is_the_net_that_was_learnt(tmp_path, monkeypatch):
+    learnt = learned.segmentation_net(tmp_path, VIEWS, "views", 1, seed=0, stage=silent)
+    monkeypatch.setattr(segnet, "train", never)
+    loaded = learned.segmentation_net(tmp_path, VIEWS, "views", 1, seed=0, stage=silent)
     assert learnt.keys() == loaded.keys()
     for name in learnt:
         assert learnt[name].dtype == loaded[name].dtype
         assert np.array_equal(learnt[name], loaded[name])
     assert any((learnt[name] != start).any() for name, start in segnet.new_params(np.random.default_rng(0)).items())
+
+
+class Helper:
+    """An executor that does what it is given at once, in this process, and counts it."""
+
+    def __init__(self):
+        self.given = 0
+
+    def submit(self, function, *args, **options):
+        self.given += 1
+        done = function(*args, **options)
+        return SimpleNamespace(result=lambda: done)
+
+
+@pytest.fixture
+def parts(two_rooms):
+    """Senses of true labels and a GCN that has learned nothing, a grid, a helper."""
+    grid = PlaceGrid(two_rooms)
+    return Senses(two_rooms, None, GCN(grid.n_places, np.random.default_rng(0), hidden=8)), grid, Helper()
+
+
+def test_a_classifier_a_store_and_a_scan_from_their_files_are_those_that_were_learnt(parts, tmp_path, monkeypatch):
+    senses, grid, helper = parts
+    other = make_home(3)
+
+    def learn():
+        one = learned.place_classifier(tmp_path, senses, grid, 8, 0, {}, helper, None, epochs=1, batch=4)
+        of_worlds = learned.place_classifiers(tmp_path, {3: Senses(other, None, None), 4: senses}, 8, 0, {"many": 1},
+                                              helper, epochs=1, batch=4)
+        store = learned.q_values(tmp_path, senses, Robot(senses.world), grid, 4, 0, {}, silent)
+        scan = learned.fixed_scan(tmp_path, senses, grid, 1, 0, {}, helper)()
+        networks = [one, *(of_worlds[world] for world in (3, 4))]
+        assert [network.scores(senses.look(STARTS, np.random.default_rng(0))).shape[1] for network in networks] == [
+            grid.n_places, PlaceGrid(other).n_places, grid.n_places]
+        return [array for part in networks for array in part.params.values()] + [*store.values, scan]
+
+    learnt, given = learn(), helper.given
+    assert given == 4  # half of the views of one GCN, two other GCNs, the race
+    assert len(list(tmp_path.iterdir())) == 5
+    for module, name in ((gcn, "train"), (episode, "train_nnql"), (episode, "race")):
+        monkeypatch.setattr(module, name, never)
+    for one, again in zip(learnt, learn(), strict=True):
+        np.testing.assert_array_equal(one, again)
+    assert helper.given == given
+
+
+@pytest.mark.parametrize("helped", [False, True])
+def test_what_is_seen_from_a_pose_is_learnt_as_the_place_of_that_pose(parts, monkeypatch, helped):
+    senses, grid, helper = parts
+    taught = []
+    monkeypatch.setattr(gcn, "train", lambda network, graphs, places, *_, **how: taught.append((graphs, places, how)))
+    learned.learn_places(senses, grid, 9, 5, helper if helped else None, epochs=7)
+    ((graphs, places, how),) = taught
+    poses = senses.world.free_poses(9, np.random.default_rng(5))
+    seen = senses.look(poses, np.random.default_rng(0))  # true labels have no noise
+    for name in vars(seen):
+        np.testing.assert_array_equal(getattr(graphs, name), getattr(seen, name))
+    np.testing.assert_array_equal(places, grid.place_of(poses))
+    assert how["epochs"] == 7
+    assert helper.given == helped
+
+
+def test_a_store_of_another_seed_learns_from_other_starts(parts, tmp_path, monkeypatch):
+    senses, grid, _ = parts
+    starts = []
+    monkeypatch.setattr(episode, "train_nnql", lambda *args, **_: starts.append(args[3]) or NNQL(grid.n_places, 3))
+    for seed in (0, 1):
+        learned.q_values(tmp_path, senses, None, grid, 6, seed, {}, silent)
+    assert starts[0].shape == starts[1].shape == (6, 3)
+    assert (starts[0] != starts[1]).all()
+
+
+def test_the_best_sequence_is_the_winner_of_a_race_from_random_starts(parts):
+    senses, grid, _ = parts
+    starts = senses.world.free_poses(2, np.random.default_rng(7))
+    sequences, _ = episode.race(senses, Robot(senses.world), grid, starts, 7)
+    np.testing.assert_array_equal(learned.best_sequence(senses, grid, 2, 7), sequences[0])
+
+
+def test_top_places_are_shares_of_views_whose_place_is_first_and_among_three():
+    scores = np.array([[9.0, 8, 7, 6], [6, 9, 8, 7], [9, 8, 7, 6], [9, 8, 7, 6]])
+    network = SimpleNamespace(scores=lambda graphs: graphs)
+    assert learned.top_places(network, scores, np.array([0, 0, 2, 3])) == (1 / 4, 2 / 4)
 
 
 WAYS = {
@@ -123,6 +229,14 @@ def test_all_that_a_part_is_learnt_from_is_in_the_name_of_its_file(monkeypatch, 
     names = [get(part, "", **WAYS[part])]
     names += [get(part, "", **{**WAYS[part], key: other}) for key, other in OTHERS.items() if key in WAYS[part]]
     assert len(set(names)) == len(names) >= 4
+
+
+def test_a_net_of_other_layers_has_another_file(monkeypatch):
+    monkeypatch.setattr(learned, "kept", lambda folder, name, settings, *_: learned.digest(settings))
+    way = WAYS[learned.segmentation_net]
+    here = learned.segmentation_net("", **way)
+    monkeypatch.setattr(segnet, "new_params", lambda rng: {"w": rng.random(3)})
+    assert learned.segmentation_net("", **way) != here
 
 
 @pytest.mark.parametrize("part", WAYS, ids=lambda part: part.__name__)

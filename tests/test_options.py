@@ -25,8 +25,10 @@ def lived(*steps):
 
 
 def options_of(experience, length, k, worth=(0, 0, 0)):
-    """Options of an Experience, the three sequences of one action being worth so much."""
-    return Options(experience, np.repeat(np.arange(N_ACTIONS)[:, None], length, 1), np.array(worth, float), k)
+    """Options of an Experience, the three sequences of one action being worth so much, those of several far more."""
+    sequences = planners.sequences(length)[::-1]
+    worths = [worth[s[0]] if len(set(s.tolist())) == 1 else 9.0 for s in sequences]
+    return Options(experience, sequences, np.array(worths), k)
 
 
 def test_an_experience_is_the_steps_and_how_well_the_true_place_ranked_after_each():
@@ -67,10 +69,21 @@ def test_over_all_first_views_an_option_is_worth_what_it_was_in_the_race():
     assert made.q_values(first).std(0).min() > 0
 
 
+def test_only_first_views_are_compared_with_the_race_and_later_steps_teach_nonetheless():
+    a, b, c = ranking(1, 2, 3), ranking(11, 12, 13), ranking(11, 12, 21)  # c is nearest to b
+    experience = lived((a, 0, b, 12))
+    experience.watch(2, seen=b[None], actions=np.array([0]), states=c[None], places=np.array([11]))
+    made = options_of(experience, 2, 1, worth=(0.3, 0, 0))
+    assert made.values(a[None])[0, 0] == pytest.approx((1 / 2 + 1) / 2)
+    assert made.q_values(a[None])[0, 0] == pytest.approx(0.3)
+    assert made.q_values(b[None])[0, 0] == pytest.approx(0.3 + 1 - 0.75)
+
+
 def test_all_neighbours_count_alike():
     a, near, far = ranking(1, 2, 3), ranking(1, 3, 2), ranking(21, 22)
     experience = lived((a, 0, far, 22), (near, 0, far, 21), (far, 0, far, 23))
     assert options_of(experience, 1, 2).values(a[None])[0, 0] == pytest.approx((1 / 2 + 1) / 2)
+    assert options_of(experience, 2, 3).values(a[None])[0, 0] == pytest.approx((1 / 2 + 1 + far[23]) / 3)  # later, too
 
 
 @pytest.mark.parametrize("k", [1, 7, 40, 200])
@@ -106,3 +119,26 @@ def test_the_better_direction_is_found_where_it_depends_on_the_first_view():
     first = plan(0, np.stack([view(one) for one in kind]), rng)
     assert (first == kind).mean() > 0.9
     assert (plan(1, None, rng) == first).all()  # and it goes on, whatever it sees
+
+
+class Worth:
+    """Options whose values are the states themselves."""
+
+    def q_values(self, states):
+        return np.asarray(states)
+
+
+def test_each_episode_chooses_anew_from_its_first_view_and_among_equals_by_chance():
+    plan, rng = planners.go_on(Worth()), np.random.default_rng(0)
+    for first in ([[1, 3, 2], [5, 0, 0]], [[0, 0, 1], [0, 1, 0], [1, 0, 0]]):
+        chosen = np.argmax(first, 1).tolist()
+        assert [plan(step, np.roll(first, step, 1), rng).tolist() for step in range(3)] == [chosen] * 3
+    of_equals = plan(0, np.tile([1, 1, 0], (600, 1)), rng)
+    assert np.bincount(of_equals, minlength=3) / 600 == pytest.approx([0.5, 0.5, 0], abs=0.08)
+
+
+def test_the_race_decides_between_options_that_experience_finds_alike():
+    a, b = ranking(1, 2), ranking(11, 12)
+    experience = lived(*[(a, action, b, 11) for action in range(N_ACTIONS)])
+    plan = planners.go_on(options_of(experience, 4, 1, worth=(0.2, 0.1, 0.3)))
+    assert plan(0, np.stack([a, b]), np.random.default_rng(0)).tolist() == [2, 2]

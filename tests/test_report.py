@@ -1,18 +1,23 @@
 """The report: its numbers are those of the cells' files, by hand; its pictures show them; what is no cell is named."""
 
+import itertools
 import json
 import re
+import shutil
 
 import numpy as np
 import pytest
 from PIL import Image
+from scipy import stats
 
-from gnl import draw_charts, report
+from gnl import report
 from gnl.__main__ import main
-from gnl.experiment import GAPS_DEG, GAPS_M, to_bytes
+from gnl.experiment import to_bytes
 from gnl.paper import table_1
 
-N = 100
+N = 40
+GAPS = (0.2, 10), (0.2, 90), (1.0, 90)
+METHODS = "SV", "MV", "Scan", "Ours", "DA", "Oracle"
 
 
 def outcome(rng, share):
@@ -23,23 +28,19 @@ def outcome(rng, share):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Twelve cells of known shares of right answers."""
+    """Six cells of known shares of right answers."""
     out, rng = tmp_path_factory.mktemp("report"), np.random.default_rng(0)
-    for world in (800, 801):
-        for m in (0.2, 0.6, 1.0):
-            for deg in (10, 90):
-                first = outcome(rng, 0.3)
-                tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.5)}
-                tests["MV"]["place"][0] = first["place"][0]
-                result = {"cell": {"world": world, "t_xy_m": m, "t_theta_deg": deg, "seed": 0}, "sequence": [0] * 4,
-                          "tests": tests, "checkpoints": [outcome(rng, 0.36 + 0.01 * i) for i in range(10)],
-                          "validation": [outcome(rng, 0.4) for _ in range(10)]}
-                costs = {"seconds": 10.0, "views": 1000, "of stages": {"labels": 5.0, "graph": 1.0, "plan": 0.5},
-                         "machine": "two cores", "peak MB": 123.0, "versions": {"numpy": "2.0"}}
-                for kind, value in (("cells", result), ("costs", costs)):
-                    path = out / kind / f"{world}-{m:g}m-{deg}deg-seed0.json"
-                    path.parent.mkdir(exist_ok=True)
-                    path.write_bytes(to_bytes(value))
+    for i, (world, (m, deg)) in enumerate(itertools.product((800, 801), GAPS)):
+        tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.55)}
+        result = {"cell": {"world": world, "t_xy_m": m, "t_theta_deg": deg, "seed": 0}, "sequence": [0] * 4,
+                  "tests": tests, "checkpoints": [outcome(rng, 0.36 + 0.01 * i) for i in range(10)],
+                  "validation": [outcome(rng, 0.4) for _ in range(10)]}
+        costs = {"seconds": 3600.0 * (1 + i % 2), "views": 500_000, "of stages": {"labels": 3600.0, "graph": 100.0 * i},
+                 "machine": f"core {i % 2}", "peak MB": 123.0 - i, "versions": {"numpy": "2.0"}}
+        for kind, value in (("cells", result), ("costs", costs)):
+            path = out / kind / f"{world}-{m:g}m-{deg}deg-seed0.json"
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(to_bytes(value))
     (out / "settings.json").write_bytes(to_bytes({"episodes": 10_000, "tests": N}))
     return out
 
@@ -52,10 +53,25 @@ def written(folder):
     return (folder / "report" / "report.md").read_text()
 
 
-def last(folder, name, method):
-    result = json.loads((folder / "cells" / f"{name}.json").read_bytes())
-    of = result["checkpoints"][-1] if method == "Ours" else result["tests"][method]
-    return np.array([c == "1" for c in of["place"][-1]])
+@pytest.fixture(scope="module")
+def cells(folder):
+    """Of each cell (world, T_xy, T_theta) the right answers after the last look, as numbers, read by hand."""
+    found = {}
+    for path in sorted(folder.glob("cells/*.json")):
+        result = json.loads(path.read_bytes())
+
+        def looks(outcome):
+            return [np.array([int(c) for c in look]) for look in outcome["place"]]
+
+        of = [looks(outcome)[-1] for outcome in result["checkpoints"]]
+        on_validation = [looks(outcome)[-1].sum() for outcome in result["validation"]]
+        on_tests = [right.sum() for right in of]
+        chosen, best = (max(i for i in range(10) if n[i] == max(n)) for n in (on_validation, on_tests))
+        where = tuple(result["cell"][key] for key in ("world", "t_xy_m", "t_theta_deg"))
+        found[where] = {"SV": looks(result["tests"]["MV"])[0], "MV": looks(result["tests"]["MV"])[-1],
+                        "Scan": looks(result["tests"]["Scan"])[-1], "Ours": of[-1], "DA": of[chosen],
+                        "Oracle": of[best], "chosen": chosen, "best": best}
+    return found
 
 
 def row(written, start):
@@ -64,44 +80,109 @@ def row(written, start):
     return [cell.strip() for cell in line.split("|")[1:-1]]
 
 
-def test_the_means_are_those_of_the_files_and_the_papers_stand_beside_them(folder, written):
-    names = [path.stem for path in (folder / "cells").glob("*.json")]
-    ours, theirs = row(written, "all")[4].split()
-    assert float(ours) == pytest.approx(100 * np.mean([last(folder, name, "Ours") for name in names]), abs=0.051)
-    cells = [table_1()[w, m, d]["Ours"] for w in (800, 801) for m in (0.2, 0.6, 1.0) for d in (10, 90)]
-    assert theirs == f"({np.mean(cells):.1f})"
+def section(written, title):
+    return written.split(f"## {title}\n")[1].split("\n## ")[0]
 
 
-def test_a_difference_is_that_of_the_pairs_with_its_interval_and_p(folder, written):
-    names = sorted(path.stem for path in (folder / "cells").glob("*.json"))
-    d = np.concatenate([last(folder, name, "Scan").astype(int) - last(folder, name, "MV") for name in names])
-    _, points, interval, p, *worlds = row(written, "Scan - MV")
+def near(number):
+    """As near as one decimal can be."""
+    return pytest.approx(number, abs=0.051)
+
+
+@pytest.mark.parametrize(("start", "column", "value"), [
+    ("all", None, None), ("home 801", 0, 801), ("T_xy 0.2 m", 1, 0.2), ("T_theta 10 deg", 2, 10)])
+def test_the_means_are_those_of_the_files_and_the_papers_stand_beside_them(cells, written, start, column, value):
+    part = section(written, "Means")
+    assert row(part, "")[1:] == list(METHODS)
+    group = [cell for cell in cells if column is None or cell[column] == value]
+    for method, said in zip(METHODS, row(part, start)[1:], strict=True):
+        ours, *theirs = said.split()
+        assert float(ours) == near(100 * np.mean([cells[cell][method].mean() for cell in group]))
+        papers = [table_1()[cell][method] for cell in group if method in table_1()[cell]]
+        assert theirs == ([f"({np.mean(papers):.1f})"] if papers else [])
+
+
+@pytest.mark.parametrize("pair", [("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Oracle", "Ours")])
+def test_a_difference_is_that_of_the_pairs_with_its_interval_and_p(cells, written, pair):
+    a, b = pair
+    part = section(written, "Differences in pairs")
+    _, points, interval, p, *worlds = row(part, f"{a} - {b}")
+    d = np.concatenate([of[a] - of[b] for of in cells.values()])
     low, high = map(float, re.findall(r"[+-][\d.]+", interval))
-    assert float(points) == pytest.approx(100 * d.mean(), abs=0.051)
+    assert float(points) == near(100 * d.mean())
     assert low < float(points) < high
-    assert float(p) < 0.05
-    assert len(worlds) == 2
+    assert float(p) == pytest.approx(stats.binomtest(int((d > 0).sum()), int((d != 0).sum())).pvalue, rel=0.5)
+    assert row(part, "")[4:] == ["world 800", "world 801"]
+    for world, words in zip((800, 801), worlds, strict=True):
+        of_world = np.mean([of[a] - of[b] for (home, *_), of in cells.items() if home == world])
+        assert float(words.split()[0]) == near(100 * of_world)
+
+
+def test_as_many_episodes_are_named_as_pairs_and_as_no_pairs_would_need(cells, written):
+    scan, mv = (np.concatenate([of[name] for of in cells.values()]) for name in ("Scan", "MV"))
+    variances = (scan - mv).var(), scan.var() + mv.var()
+    ten, _, _, one = row(section(written, "How many episodes it takes"), "Scan - MV")[1:]
+    for said, difference in ((ten, 0.1), (one, 0.01)):
+        needed = [(1.959964 + 0.841621) ** 2 * variance / difference ** 2 for variance in variances]
+        assert [int(n) for n in said.split(" / ")] == pytest.approx(needed, abs=1)
+
+
+def test_locations_are_told_apart_from_places(written, cells):
+    part = section(written, "The location alone")
+    assert row(part, "location")[1:] == ["100.0"] * len(METHODS)
+    assert float(row(part, "place")[3]) == near(100 * np.mean([of["Scan"].mean() for of in cells.values()]))
+
+
+def test_the_checkpoints_that_were_chosen_and_that_were_best_are_counted(written, cells):
+    part = section(written, "Which checkpoint adaptation chose")
+    assert row(part, "checkpoint")[1:] == [str(i) for i in range(1, 11)]
+    for start, key in (("chosen", "chosen"), ("best on the tests", "best")):
+        counted = [sum(of[key] == i for of in cells.values()) for i in range(10)]
+        assert [int(n) for n in row(part, start)[1:]] == counted
+    gain = 100 * np.mean([of["DA"] - of["Ours"] for of in cells.values()])
+    assert float(re.search(r"DA - Ours ([+-][\d.]+)", part)[1]) == near(gain)
+
+
+def test_the_difference_by_gap_is_that_of_its_cells(folder, cells):
+    results, _, _ = report.load(folder)
+    of_world = report.by_gap(results, "Scan", "MV")
+    assert {(world, *gap) for world, gaps in of_world.items() for gap in gaps} == set(cells)
+    for (world, *gap), of in cells.items():
+        assert of_world[world][tuple(gap)] == pytest.approx(100 * (of["Scan"] - of["MV"]).mean())
+    twice = report.by_gap([results[0], results[0]], "Scan", "MV")
+    assert twice == report.by_gap(results[:1], "Scan", "MV")
+
+
+def test_the_report_says_how_much_it_stands_on(written):
+    assert (f"6 cells, 10000 training episodes and {N} tests each; {6 * N} test episodes of every method") in written
 
 
 def test_the_papers_own_differences_are_told(written):
-    part = written.split("## The paper's own cells")[1].split("##")[0]
+    part = section(written, "The paper's own cells")
     assert [row(part, name)[1] for name in ("MV - SV", "Ours - MV", "DA - Ours")] == ["+9.5", "+2.6", "-0.2"]
 
 
-def test_every_cell_stands_in_the_table_in_the_papers_order(folder, written):
-    rows = [line for line in written.split("## Table I\n")[1].splitlines() if re.match(r"\| [\d.]+ \| \d+ \|", line)]
-    gaps = [tuple(float(cell) for cell in line.split("|")[1:3]) for line in rows]
-    assert gaps == sorted(gaps, reverse=True)
-    assert len(gaps) == 6
-    first = rows[0].split("|")
-    assert float(first[4].split()[0]) == pytest.approx(100 * last(folder, "800-1m-90deg-seed0", "MV").mean(), abs=0.051)
-    assert first[4].split()[1] == "(52)"
+def test_every_cell_stands_in_the_table_in_the_papers_order(cells, written):
+    part = section(written, "Table I")
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in part.strip().splitlines()]
+    heads = [f"{world} {method}" for world in (800, 801) for method in METHODS]
+    assert rows[0] == ["T_xy [m]", "T_theta [deg]", *heads]
+    gaps = [(float(m), int(deg)) for m, deg, *_ in rows[2:]]
+    assert gaps == sorted(GAPS, reverse=True)
+    for gap, (_, _, *numbers) in zip(gaps, rows[2:], strict=True):
+        for head, said in zip(heads, numbers, strict=True):
+            (world, method), (ours, *theirs) = head.split(), said.split()
+            assert float(ours) == near(100 * cells[(int(world), *gap)][method].mean())
+            papers = table_1()[(int(world), *gap)].get(method)
+            assert theirs == ([] if papers is None else [f"({papers:.0f})"])
 
 
 def test_costs_are_those_of_all_views(written):
-    assert row(written, "labels and graph") == ["labels and graph", "6.00", "18"]
-    assert row(written, "all")[1:3] != row(written, "plan")[1:3]
-    assert "at most 123 MB a process" in written
+    part = section(written, "What it costs")
+    assert row(part, "labels and graph") == ["labels and graph", f"{(6 * 3600 + 1500) / 3000:.2f}", "18"]
+    assert row(part, "all") == ["all", f"{9 * 3600 / 3000:.2f}", "28"]
+    assert "3000000 views in 9.0 hours of one core; at most 123 MB a process; core 0, core 1; numpy 2.0" in part
+    assert part.index("labels and graph") < part.index("| all |")
 
 
 def test_the_pictures_are_there_and_the_text_names_them(folder, written):
@@ -111,11 +192,14 @@ def test_the_pictures_are_there_and_the_text_names_them(folder, written):
     assert len(re.findall(r"\]\((\w+\.png)\)", written)) == 3
 
 
-def test_a_second_report_is_the_same(folder, written):
-    before = {path.name: path.read_bytes() for path in (folder / "report").iterdir()}
-    with pytest.raises(SystemExit):
-        main(["report", "--out", str(folder)])
-    assert before == {path.name: path.read_bytes() for path in (folder / "report").iterdir()}
+def test_a_second_report_is_the_same(folder, tmp_path):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("*90deg*", "report"))
+    for to in ("first", "second"):
+        with pytest.raises(SystemExit):
+            main(["report", "--out", str(tmp_path / "one"), "--to", str(tmp_path / to)])
+    files = {path.name: path.read_bytes() for path in (tmp_path / "first").iterdir()}
+    assert len(files) == 4
+    assert files == {path.name: path.read_bytes() for path in (tmp_path / "second").iterdir()}
 
 
 @pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3'])
@@ -139,23 +223,6 @@ def test_where_there_is_no_cell_the_command_says_so(tmp_path, capsys):
     assert exit.value.code == 2
     assert "expected cells of `python -m gnl table`, found none" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-
-
-def test_a_shade_tells_better_from_worse_and_none_is_white():
-    assert draw_charts.shade(0) == (255, 255, 255)
-    better, worse = draw_charts.shade(10), draw_charts.shade(-10)
-    assert better[2] > better[0]
-    assert worse[0] > worse[2]
-    assert draw_charts.shade(15) == draw_charts.shade(40)
-
-
-def test_a_heat_map_has_a_field_for_each_gap_and_grey_where_nothing_is_known():
-    points = {(m, deg): 12.0 for m in GAPS_M for deg in GAPS_DEG}
-    full = np.array(draw_charts.heat_maps({800: points}, GAPS_M, GAPS_DEG))
-    del points[0.6, 50]
-    less = np.array(draw_charts.heat_maps({800: points}, GAPS_M, GAPS_DEG))
-    blue = (full == draw_charts.shade(12.0)).all(2).sum()
-    assert (less == draw_charts.shade(12.0)).all(2).sum() / blue == pytest.approx(24 / 25, abs=0.01)
 
 
 def test_interval_of_equal_cells():

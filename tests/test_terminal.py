@@ -119,15 +119,6 @@ def test_a_fault_of_our_own_is_not_hidden():
         guarded("python -m gnl", stop, KeyError("rgb"))
 
 
-def test_who_stops_reading_hears_no_complaint():
-    code = "from gnl.terminal import guarded; guarded('test', lambda: [print('line', flush=True) for _ in range(9999)])"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        process.stdout.readline()
-        process.stdout.close()
-        assert process.stderr.read() == b""
-        assert process.wait(10) == 128 + signal.SIGPIPE
-
-
 @pytest.mark.parametrize("end", [ValueError("a mistake"), KeyboardInterrupt()], ids=["mistake", "ctrl-c"])
 def test_on_a_terminal_the_last_words_stand_on_a_line_of_their_own(monkeypatch, end):
     stream = Terminal()
@@ -150,6 +141,12 @@ def test_processes_work_beside_this_one_and_end_with_the_block():
         assert len(others) == 2
         assert pool.submit(os.getpid).result() in others - {os.getpid()}
     assert multiprocessing.active_children() == []
+
+
+def test_work_that_has_not_begun_when_the_block_ends_is_never_begun():
+    with processes(1) as pool:
+        works = [pool.submit(time.sleep, 0.1) for _ in range(20)]
+    assert works[-1].cancelled()
 
 
 def test_ctrl_c_reaches_this_process_alone_from_the_moment_another_one_starts():

@@ -4,14 +4,21 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from data_gen import starts as starts_module
 from data_gen.rooms import make_home
-from data_gen.starts import beyond_gap, draw_starts, training_starts
-from gnl.experiment import GAPS_DEG, GAPS_M
+from data_gen.starts import beyond_gap, draw_starts, starts_of, training_starts
+from gnl.experiment import GAPS_DEG, GAPS_M, Cell
+from gnl.floor_map import BELIEF, ROBOT
 from gnl.places import wrap_angle
 from gnl.world import World
 from tests.conftest import room
 
 N_TESTS = 100
+
+
+@pytest.fixture(autouse=True)
+def fewer_at_once(monkeypatch):
+    monkeypatch.setattr(starts_module, "DRAWN_AT_ONCE", 20_000)
 
 
 @pytest.fixture(scope="module", params=[800, 801, 809])
@@ -55,6 +62,11 @@ def test_the_gap_is_a_matter_of_the_nearest_test_start_alone():
     assert beyond_gap(poses, tests, 0.2, 0.5).tolist() == [True, False, False, False, True, True]
 
 
+def test_what_is_just_as_far_as_the_gap_is_not_beyond_it():
+    poses = np.array([[0.25, 0, 1.0], [0.5, 0, 0.5], [0.5, 0, 1.0]])
+    assert beyond_gap(poses, np.zeros((1, 3)), 0.25, 0.5).tolist() == [False, False, True]
+
+
 def test_bearings_are_compared_around_the_circle():
     tests = np.array([[0.0, 0, np.pi - 0.05]])
     poses = np.array([[1.0, 0, -np.pi + 0.1], [1.0, 0, -np.pi + 0.5]])
@@ -68,9 +80,8 @@ def test_training_starts_are_uniform_but_for_the_gap():
     turned = (starts[:, 2] - 0.5) % (2 * np.pi)
     assert stats.kstest(turned, stats.uniform(np.pi / 3, 4 * np.pi / 3).cdf).pvalue > 1e-3
     x, y = np.meshgrid(np.arange(0.05, 6, 0.1), np.arange(0.05, 4, 0.1), indexing="ij")
-    free = home.is_reachable(np.stack([x.ravel(), y.ravel()], 1)).reshape(x.shape)
-    area = (free & (np.hypot(x - 3, y - 2) > 0.5)).reshape(6, 10, 4, 10)
-    expected = area.sum((1, 3)).ravel()  # of each square metre, what is free and beyond the gap
+    area = home.is_reachable(np.stack([x, y], -1).reshape(-1, 2)).reshape(x.shape) & (np.hypot(x - 3, y - 2) > 0.5)
+    expected = area.reshape(6, 10, 4, 10).sum((1, 3)).ravel()  # of each square metre, what is free and beyond the gap
     found = np.histogram2d(starts[:, 0], starts[:, 1], [np.arange(7), np.arange(5)])[0].ravel()
     assert (abs(found / len(starts) - expected / expected.sum()) < 0.012).all()
 
@@ -83,11 +94,51 @@ def test_test_starts_are_drawn_before_all_else_and_do_not_depend_on_the_gap():
     np.testing.assert_array_equal(near["tests"], home.free_poses(7, np.random.default_rng(5)))
 
 
+def test_a_cell_has_starts_beyond_its_own_gap_the_same_each_time_and_as_no_other_cell():
+    home, sizes = World(room()), (30, 6, 2)
+    cells = [Cell(*of) for of in ((800, 0.4, 50, 0), (800, 0.4, 50, 1), (800, 0.4, 90, 0), (800, 0.6, 50, 0))]
+    of_cells = [starts_of(cell, home, *sizes) for cell in cells]
+    for cell, starts in zip(cells, of_cells, strict=True):
+        assert [len(starts[name]) for name in ("training", "tests", "validation")] == list(sizes)
+        distance, turn = differences(starts["training"], starts["tests"])
+        assert (distance > cell.t_xy_m).all()
+        assert (turn > np.radians(cell.t_theta_deg)).all()
+        for name, again in starts_of(cell, home, *sizes).items():
+            np.testing.assert_array_equal(starts[name], again)
+    assert len(np.unique(np.concatenate([starts["tests"] for starts in of_cells]), axis=0)) == 4 * 6
+
+
 def test_a_gap_that_a_home_has_no_room_for_is_refused_with_the_share_that_was_seen():
     home = World(room(size=(2.0, 2.0)))
     with pytest.raises(ValueError, match=r"room: expected room for starts 3 m and 10 degrees off all 5 test starts, "
                                          r"found 0 among \d+ poses drawn"):
         draw_starts(home, 3.0, np.radians(10), 10, 5, 1, np.random.default_rng(0))
+
+
+def test_a_gap_that_few_poses_are_beyond_is_tried_for_as_long_as_poses_do_turn_up(monkeypatch):
+    monkeypatch.setattr(starts_module, "DRAWN_AT_ONCE", 500)
+    home, tests = World(room()), np.array([[3.0, 2.0, 0.0]])
+    assert len(training_starts(home, tests, 0.0, np.radians(170), 100, np.random.default_rng(0))) == 100
+    monkeypatch.setattr(starts_module, "FEWEST", 0.1)
+    with pytest.raises(ValueError, match=r"found \d+ among \d+ poses drawn"):
+        training_starts(home, tests, 0.0, np.radians(170), 100, np.random.default_rng(0))
+
+
+def test_who_learns_starts_only_where_one_can_get_to(two_rooms_plan):
+    two_rooms_plan["doors"][1]["state"] = "closed"
+    home, tests = World(two_rooms_plan), np.array([[1.0, 2.0, 0.0]])
+    starts = training_starts(home, tests, 0.1, 0.1, 500, np.random.default_rng(0))
+    assert home.is_reachable(starts[:, :2]).all()
+    others = np.random.default_rng(0).uniform((0, 0), (7, 4), (2000, 2))
+    assert (home.is_free(others) & ~home.is_reachable(others)).any()
+
+
+def test_a_picture_shows_both_kinds_of_starts_where_they_are():
+    home, along = World(room()), np.linspace(0.5, 3.5, 9)
+    training, tests = (np.stack([np.full(9, x), along, along], 1) for x in (1.0, 5.0))
+    pixels = np.array(starts_module.picture(home, {"training": training, "tests": tests}))
+    violet, orange = (np.nonzero((pixels[60:] == colour).all(2))[1] for colour in (BELIEF, ROBOT))
+    assert violet.max() < pixels.shape[1] / 2 < orange.min()
 
 
 def test_no_pose_is_turned_by_more_than_half_a_circle():

@@ -1,0 +1,80 @@
+"""The charts of the report: what is better is blue, farther right, higher up or taller, as its numbers are."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from gnl import draw_charts
+from gnl.experiment import GAPS_DEG, GAPS_M
+
+
+def test_a_shade_tells_better_from_worse_and_none_is_white():
+    assert draw_charts.shade(0) == (255, 255, 255)
+    better, worse = draw_charts.shade(10), draw_charts.shade(-10)
+    assert better[2] > better[0]
+    assert worse[0] > worse[2]
+    assert draw_charts.shade(15) == draw_charts.shade(40)
+
+
+def test_a_heat_map_has_a_field_for_each_gap_and_grey_where_nothing_is_known():
+    points = {(m, deg): 12.0 for m in GAPS_M for deg in GAPS_DEG}
+    full = np.array(draw_charts.heat_maps({800: points}, GAPS_M, GAPS_DEG))
+    del points[0.6, 50]
+    less = np.array(draw_charts.heat_maps({800: points}, GAPS_M, GAPS_DEG))
+    blue = (full == draw_charts.shade(12.0)).all(2).sum()
+    assert (less == draw_charts.shade(12.0)).all(2).sum() / blue == pytest.approx(24 / 25, abs=0.01)
+
+
+def spots(picture, colour):
+    """Middle, upper left and lower right pixel, (x, y) each, of what has just this colour, and how many they are."""
+    y, x = np.nonzero((np.array(picture) == colour).all(2))
+    return (x.mean(), y.mean()), (x.min(), y.min()), (x.max(), y.max()), len(x)
+
+
+def test_on_a_heat_map_wider_gaps_lie_farther_right_and_sharper_turns_higher_up():
+    gaps_m, gaps_deg = (0.2, 0.6, 1.0, 2.0), (10, 90)
+    middles = {}
+    for gap in itertools.product(gaps_m, gaps_deg):
+        for value in (12.0, -12.0):
+            picture = draw_charts.heat_maps({800: {gap: value}}, gaps_m, gaps_deg)
+            middles[gap, value] = spots(picture, draw_charts.shade(value))[0]
+        assert middles[gap, 12.0] == pytest.approx(middles[gap, -12.0], abs=3)
+    columns = [middles[(m, 10), 12.0][0] for m in gaps_m]
+    assert np.diff(columns) == pytest.approx([54] * 3, abs=1)
+    for m in gaps_m:
+        (x, y), (above_x, above_y) = middles[(m, 10), 12.0], middles[(m, 90), 12.0]
+        assert (above_x - x, above_y - y) == pytest.approx((0, -34), abs=1)
+
+
+def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_band():
+    n, rising = 5, np.linspace(0.35, 0.65, 5)
+    methods = {"Ours": np.tile(rising, (4, 1)), "Scan": np.repeat([[0.3], [0.7], [0.5]], n, 1)}
+    picture = draw_charts.curves({800: methods})
+    inside = np.array(picture)[:, :12 + 300 - 52]  # without the names at the right
+    ours = [np.nonzero(abs(inside[:, x] - np.array(draw_charts.LINES["Ours"])).max(1) < 60)[0].mean()
+            for x in (62, 108, 208, 254)]  # not where the lines cross
+    _, scan_first, scan_last, _ = spots(inside, draw_charts.LINES["Scan"])
+    assert (np.diff(ours) < 0).all()
+    assert ours[0] + ours[-1] == pytest.approx(scan_first[1] + scan_last[1], abs=3)  # the mean of Scan lies half-way
+    assert scan_last[1] - scan_first[1] <= 3
+    _, first, last, _ = spots(inside, draw_charts.FAINT)
+    assert first[1] < min(ours) < max(ours) < last[1]
+    assert last[0] == pytest.approx(scan_last[0], abs=2)
+    names = {name: spots(np.array(picture)[:, 12 + 300 - 50:], draw_charts.LINES[name])[0][1] for name in methods}
+    assert names["Ours"] < names["Scan"]
+    methods["Ours"] = methods["Ours"] + [[-0.1], [0.1], [0], [0]]
+    band = np.array(draw_charts.curves({800: methods}))
+    pale = (np.array([255, 255, 255]) * 205 + np.array(draw_charts.LINES["Ours"]) * 50) / 255
+    assert (abs(band - pale).max(2) <= 2).sum() > 500
+    assert (abs(inside - pale).max(2) <= 2).sum() < 50
+
+
+def test_a_histogram_has_bars_as_high_as_they_are_many_each_in_its_place():
+    picture = draw_charts.histogram({0: 2, 6: 4})
+    bars = np.array(picture)
+    first, seventh = (spots(half, draw_charts.BAR) for half in (bars[:, :210], bars[:, 210:]))
+    assert first[3] / seventh[3] == pytest.approx(1 / 2, abs=0.02)
+    assert first[2][1] == seventh[2][1]  # they stand on one line
+    assert seventh[0][0] + 210 - first[0][0] == pytest.approx(6 * (420 - 32) / 10, abs=1)
+    assert seventh[1][1] < 30  # the highest fills the picture
