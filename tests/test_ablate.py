@@ -3,30 +3,28 @@
 import contextlib
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
-from gnl import ablate, camera, choices, episode, gcn, particles, planners, scene_graph, strip
+from gnl import ablate, camera, episode, gcn, learned, nnql, particles, planners, scene_graph, strip
 from gnl.__main__ import main
-from gnl.choices import CHOICES, OURS, TRUE_LABELS, BruteForce, Choice
+from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
-from gnl.episode import Senses
+from gnl.episode import Rules, Senses
 from gnl.experiment import to_bytes
 from gnl.gcn import GCN
-from gnl.kdtree import KDTree
-from gnl.nn import softmax
 from gnl.places import PlaceGrid
-from gnl.ranks import reciprocal_ranks
-from gnl.scene_graph import regions
+from gnl.robot import Motion
 from gnl.table import Settings, path_of
 
 PAGE = Path(__file__).parents[1] / "tutorials" / "open_points.md"
 CELL = ablate.CELLS[0]
-SCORES, POOLED = np.array([[0.0, 3, 1], [2, 0, 0]]), np.array([[0.7, 0.1, 0.2], [0, 0, 1.0]])
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +51,44 @@ def test_every_choice_runs_and_leaves_no_trace(choice, parts, monkeypatch):
     assert here == constants()
 
 
+OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Motion(forward_m=1.0), true_labels=True,
+               anew=True, constants={"camera.HEIGHT_M": 0.7})
+
+
+@pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
+def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, parts, monkeypatch):
+    senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
+    gcn, learnt, trained, tested = senses.gcn, [], [], []
+
+    def learn_places(senses, grid, n_views, seed, **how):
+        learnt.append((senses.net, n_views, how))
+        return "another GCN"
+
+    def train_nnql(senses, robot, grid, poses, seed, rules, store):
+        trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
+        assert (poses is starts["training"], store.k) == (True, choice.store.get("k", nnql.K_NEIGHBOURS))
+        tested.append(seed.spawn_key)
+
+    def run_all(senses, robot, grid, plan, poses, seed, rules):
+        trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
+        assert poses is starts["tests"]
+        tested.append(seed.spawn_key)
+        answers = np.full((8, 5), 0 if plan is planners.chance else 99)
+        return SimpleNamespace(answers=answers, places=np.zeros((8, 5), int), correct=answers == 0)
+
+    for module, double in ((learned, learn_places), (episode, train_nnql), (episode, run_all)):
+        monkeypatch.setattr(module, double.__name__, double)
+    result, _ = ablate.measure(choice, CELL, senses, starts)
+    net, s = None if choice.true_labels else senses.net, ablate.SETTINGS
+    how = {"epochs": s.gcn_epochs, "batch": s.gcn_batch, "rate": s.gcn_rate}
+    assert learnt == ([(net, s.gcn_views, how)] if choice.anew else [])
+    there = 0.7 if choice is OTHER else height
+    assert trained == [(net, "another GCN" if choice.anew else gcn, choice.motion, choice.rules, there)] * 3
+    assert tested[0] != tested[1] == tested[2]
+    assert (result["tests"]["MV"]["place"], result["tests"]["Ours"]["place"]) == (["1" * 8] * 5, ["0" * 8] * 5)
+    assert (senses.net, senses.gcn, senses.views, camera.HEIGHT_M) == ({"weights": 1}, gcn, parts[0].views, height)
+
+
 def test_a_constant_is_another_one_for_a_time_and_then_ours_again_even_after_a_fault():
     ours = camera.HEIGHT_M
     with pytest.raises(KeyError), ablate.in_place({"camera.HEIGHT_M": 0.7}):
@@ -74,60 +110,19 @@ def test_choices_have_names_of_their_own_and_stand_on_the_page():
     assert {choice.point for choice in CHOICES} - points == set()
 
 
-def test_states_are_what_their_names_say():
-    first = reciprocal_ranks(SCORES)
-    np.testing.assert_allclose(choices.probabilities(SCORES, POOLED, None), softmax(SCORES), rtol=1e-6)
-    assert choices.best_place(SCORES, POOLED, None).tolist() == [[0, 1, 0], [1, 0, 0]]
-    np.testing.assert_array_equal(choices.filter_ranks(SCORES, POOLED, None), reciprocal_ranks(POOLED))
-    assert choices.with_last_action(SCORES, POOLED, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
-    after = choices.with_last_action(SCORES, POOLED, np.array([0, 2]))
-    np.testing.assert_array_equal(after[:, :3], first)
-    assert after[:, 3:].tolist() == [[0, 1, 0, 0], [0, 0, 0, 1]]
-
-
-def test_corners_join_regions_that_sides_do_not():
-    labels = np.kron(np.array([[[3, 0, 0], [0, 3, 4]]]), np.ones((1, 8, 8), int))
-    view, label, area, boxes = choices.touching_at_corners(labels)
-    assert sorted(zip(label.tolist(), area.tolist(), boxes.tolist(), strict=True)) == [
-        (0, 192, [0, 0, 24, 16]), (3, 128, [0, 0, 16, 16]), (4, 64, [16, 8, 24, 16])]
-    assert view.tolist() == [0, 0, 0]
-    several = choices.touching_at_corners(np.concatenate([labels, labels[:, ::-1]]))
-    assert several[0].tolist() == [0, 0, 0, 1, 1, 1]
-    np.testing.assert_array_equal(several[2][:3], area)
-    assert len(regions(labels)[0]) == 5  # two beds, and the wall is in two parts
-
-
-def test_the_sparse_reward_comes_at_the_end():
-    right = np.array([True, False, True, False])
-    assert choices.at_the_end(right, None, np.array([False, False, True, True])).tolist() == [0, 0, 1, -1]
-
-
-def test_a_likelihood_by_rank_is_the_reciprocal_rank_and_a_floor_below_it():
-    np.testing.assert_allclose(choices.by_rank(SCORES), reciprocal_ranks(SCORES) + 1e-3, rtol=1e-6)
-    assert choices.by_rank(SCORES)[0].argmax() == 1
-
-
-def test_of_equal_actions_the_first_is_taken_and_of_others_the_best():
-    assert choices.first_of_equals(np.array([[1.0, 2, 2], [3, 3, 3], [0, -1, 5]]), None).tolist() == [1, 0, 2]
-
-
-def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
-    brute = BruteForce(3)
-    brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))
-    assert brute.find(np.float32([[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0.01, 1]])).tolist() == [1, 0, -1, -1]
-
-
-def test_brute_force_answers_like_the_tree():
-    rng, brute, tree = np.random.default_rng(0), BruteForce(5), KDTree(5)
-    points = rng.random((40, 5), np.float32)
-    points[7] = points[3]
-    for part in np.array_split(points, 3):
-        np.testing.assert_array_equal(brute.add(part), tree.add(part))
-    queries = np.concatenate([rng.random((6, 5), np.float32), points[:4]])
-    for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2), (4, None)):
-        mine, trees = brute.query(queries, k, n_first), tree.query(queries, k, n_first)
-        np.testing.assert_allclose(mine[0], trees[0], atol=1e-3)
-        np.testing.assert_array_equal(mine[1], trees[1])
+def test_every_choice_is_another_one_than_ours_and_than_the_others():
+    changes = []
+    for choice in CHOICES:
+        here = constants()
+        with ablate.in_place(choice.constants):
+            changed = {name: value for name, value in constants().items() if value != here[name]}
+            assert len(changed) == len(choice.constants)
+            assert camera.FIELD_OF_VIEW_RAD == strip.FIELD_OF_VIEW_RAD
+        assert choice.true_labels >= any("camera" in name for name in choice.constants)  # no net knows such views
+        changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels))
+        assert choice.store.get("k") != nnql.K_NEIGHBOURS
+    ours = OURS.rules, OURS.store, OURS.motion, {}, False
+    assert all(one != other for one, other in itertools.combinations([ours, *changes], 2))
 
 
 HIGHER, NO_EDGES = Choice("camera height", "2 m", true_labels=True), Choice("edges", "none")
@@ -179,7 +174,8 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
         assert exit.value.code == 0
         neighbours = [choice for choice in CHOICES if choice.point == "neighbours"]
         assert asked == list(itertools.product([OURS, TRUE_LABELS, *neighbours], ablate.CELLS))
-    assert capsys.readouterr().out.count("| neighbours | k = 16 | ours |") == 2
+    printed = capsys.readouterr().out
+    assert printed.count("| neighbours | k = 16 | ours |") == printed.count("| labels of the views |") == 2
     lines = page.read_text().splitlines()
     assert lines[1] == "| edges | ? |"
     assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == ["k = 1", "k = 16", "k = 64"]

@@ -24,6 +24,34 @@ def test_a_heat_map_has_a_field_for_each_gap_and_grey_where_nothing_is_known():
     less = np.array(draw_charts.heat_maps({800: points}, GAPS_M, GAPS_DEG))
     blue = (full == draw_charts.shade(12.0)).all(2).sum()
     assert (less == draw_charts.shade(12.0)).all(2).sum() / blue == pytest.approx(24 / 25, abs=0.01)
+    assert (full == draw_charts.FAINT).all(2).sum() == 0 < (less == draw_charts.FAINT).all(2).sum()
+
+
+@pytest.fixture
+def written(monkeypatch):
+    """Words and where they were written, (x, y, words) each."""
+    found, text = [], draw_charts.Canvas.text
+    monkeypatch.setattr(draw_charts.Canvas, "text",
+                        lambda page, at, words, *how: found.append((*at, words)) or text(page, at, words, *how))
+    return found
+
+
+def test_fields_and_bars_name_their_numbers(written):
+    draw_charts.heat_maps({800: {(0.2, 10): 12.0, (1.0, 90): -3.51}}, (0.2, 1.0), (10, 90))
+    assert [words for *_, words in written if words[0] in "+-"] == ["+12.0", "-3.5"]
+    written.clear()
+    draw_charts.histogram({0: 2, 6: 4})
+    numbers = [int(words) for *_, words in written if words.isdigit()]
+    assert (numbers[::2], numbers[1::2]) == ([2, 0, 0, 0, 0, 0, 4, 0, 0, 0], list(range(1, 11)))
+
+
+def test_names_of_curves_that_meet_do_not_cover_each_other_and_keep_the_order_of_the_curves(written):
+    for ours, scan in ((0.503, 0.50), (0.50, 0.503)):
+        written.clear()
+        draw_charts.curves({800: {"Ours": np.full((2, 3), ours), "Scan": np.full((2, 3), scan)}})
+        heights = {words: y for _, y, words in written if words in ("Ours", "Scan")}
+        assert abs(heights["Ours"] - heights["Scan"]) >= 13
+        assert (heights["Ours"] < heights["Scan"]) == (ours > scan)
 
 
 def spots(picture, colour):
@@ -49,7 +77,7 @@ def test_on_a_heat_map_wider_gaps_lie_farther_right_and_sharper_turns_higher_up(
 
 def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_band():
     n, rising = 5, np.linspace(0.35, 0.65, 5)
-    methods = {"Ours": np.tile(rising, (4, 1)), "Scan": np.repeat([[0.3], [0.7], [0.5]], n, 1)}
+    methods = {"Ours": np.tile(rising, (4, 1)), "Scan": np.repeat([[0.33], [0.67], [0.5]], n, 1)}
     picture = draw_charts.curves({800: methods})
     inside = np.array(picture)[:, :12 + 300 - 52]  # without the names at the right
     ours = [np.nonzero(abs(inside[:, x] - np.array(draw_charts.LINES["Ours"])).max(1) < 60)[0].mean()
@@ -61,6 +89,7 @@ def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_
     _, first, last, _ = spots(inside, draw_charts.FAINT)
     assert first[1] < min(ours) < max(ours) < last[1]
     assert last[0] == pytest.approx(scan_last[0], abs=2)
+    assert (first[1] + last[1]) / 2 == pytest.approx((scan_first[1] + scan_last[1]) / 2, abs=1)  # 30, 70 and 50 %
     names = {name: spots(np.array(picture)[:, 12 + 300 - 50:], draw_charts.LINES[name])[0][1] for name in methods}
     assert names["Ours"] < names["Scan"]
     methods["Ours"] = methods["Ours"] + [[-0.1], [0.1], [0], [0]]

@@ -117,6 +117,19 @@ def test_planners_meet_the_same_luck_until_their_actions_differ():
     assert (scan.poses[3:, 2:] != other.poses[3:, 2:]).any()
 
 
+def test_what_a_planner_draws_changes_neither_views_nor_motion_nor_filter():
+    class Noisy(Sense):
+        def scores(self, poses, rng):
+            return self.score(poses) + 9 * rng.random((len(poses), K))
+
+    def same_in_other_words(step, states, rng):
+        return np.full(len(states), LEFT + 0 * int(rng.random(7 + step)[0]))
+
+    one, other = (run(Noisy(knows), Glide(), GRID, plan, starts(9), 0)
+                  for plan in (planners.scan([LEFT] * 4), same_in_other_words))
+    assert_equal(one, other)
+
+
 def test_another_seed_is_another_run():
     a, again, b = (run(Sense(knows), Glide(), GRID, planners.chance, starts(9), seed) for seed in (0, 0, 1))
     assert_equal(a, again)

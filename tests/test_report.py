@@ -4,20 +4,23 @@ import itertools
 import json
 import re
 import shutil
+from collections import Counter
+from functools import partial
 
 import numpy as np
 import pytest
 from PIL import Image
 from scipy import stats
 
-from gnl import report
+from gnl import draw_charts, report
 from gnl.__main__ import main
 from gnl.experiment import to_bytes
 from gnl.paper import table_1
 
 N = 40
+near = partial(pytest.approx, abs=0.051)  # as one decimal can be
 GAPS = (0.2, 10), (0.2, 90), (1.0, 90)
-METHODS = "SV", "MV", "Scan", "Ours", "DA", "Oracle"
+METHODS = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
 
 
 def outcome(rng, share):
@@ -31,7 +34,7 @@ def folder(tmp_path_factory):
     """Six cells of known shares of right answers."""
     out, rng = tmp_path_factory.mktemp("report"), np.random.default_rng(0)
     for i, (world, (m, deg)) in enumerate(itertools.product((800, 801), GAPS)):
-        tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.55)}
+        tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.55), "Ours+": outcome(rng, 0.5)}
         result = {"cell": {"world": world, "t_xy_m": m, "t_theta_deg": deg, "seed": 0}, "sequence": [0] * 4,
                   "tests": tests, "checkpoints": [outcome(rng, 0.36 + 0.01 * i) for i in range(10)],
                   "validation": [outcome(rng, 0.4) for _ in range(10)]}
@@ -65,12 +68,11 @@ def cells(folder):
 
         of = [looks(outcome)[-1] for outcome in result["checkpoints"]]
         on_validation = [looks(outcome)[-1].sum() for outcome in result["validation"]]
-        on_tests = [right.sum() for right in of]
-        chosen, best = (max(i for i in range(10) if n[i] == max(n)) for n in (on_validation, on_tests))
+        chosen, best = (max(i for i in range(10) if n[i] == max(n)) for n in (on_validation, [x.sum() for x in of]))
         where = tuple(result["cell"][key] for key in ("world", "t_xy_m", "t_theta_deg"))
-        found[where] = {"SV": looks(result["tests"]["MV"])[0], "MV": looks(result["tests"]["MV"])[-1],
-                        "Scan": looks(result["tests"]["Scan"])[-1], "Ours": of[-1], "DA": of[chosen],
-                        "Oracle": of[best], "chosen": chosen, "best": best}
+        found[where] = {name: looks(outcome)[-1] for name, outcome in result["tests"].items()} | {
+            "SV": looks(result["tests"]["MV"])[0], "Ours": of[-1], "DA": of[chosen], "Oracle": of[best],
+            "chosen": chosen, "best": best}
     return found
 
 
@@ -82,11 +84,6 @@ def row(written, start):
 
 def section(written, title):
     return written.split(f"## {title}\n")[1].split("\n## ")[0]
-
-
-def near(number):
-    """As near as one decimal can be."""
-    return pytest.approx(number, abs=0.051)
 
 
 @pytest.mark.parametrize(("start", "column", "value"), [
@@ -192,6 +189,23 @@ def test_the_pictures_are_there_and_the_text_names_them(folder, written):
     assert len(re.findall(r"\]\((\w+\.png)\)", written)) == 3
 
 
+def test_the_pictures_show_the_same_numbers_as_the_text(folder, cells, tmp_path, monkeypatch):
+    shown = {}
+    for name in ("heat_maps", "curves", "histogram"):
+        monkeypatch.setattr(draw_charts, name, lambda numbers, *_, name=name: shown.update({name: numbers}) or
+                            Image.new("RGB", (1, 1)))
+    monkeypatch.setattr(report, "sections", lambda *_: [])
+    with pytest.raises(SystemExit):
+        main(["report", "--out", str(folder), "--to", str(tmp_path)])
+    for (world, *gap), of in cells.items():
+        assert shown["heat_maps"][world][tuple(gap)] == pytest.approx(100 * (of["Ours"] - of["MV"]).mean())
+    assert shown["histogram"] == Counter(of["chosen"] for of in cells.values())
+    for world, curves in shown["curves"].items():
+        for name in ("Ours", "MV", "Scan"):
+            of_world = [of[name].mean() for (home, *_), of in cells.items() if home == world]
+            assert sorted(curves[name][:, -1]) == pytest.approx(sorted(of_world))
+
+
 def test_a_second_report_is_the_same(folder, tmp_path):
     shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("*90deg*", "report"))
     for to in ("first", "second"):
@@ -202,13 +216,12 @@ def test_a_second_report_is_the_same(folder, tmp_path):
     assert files == {path.name: path.read_bytes() for path in (tmp_path / "second").iterdir()}
 
 
-@pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3'])
-def test_a_damaged_cell_is_named(folder, tmp_path, capsys, damage):
-    for kind in ("cells", "costs"):
-        (tmp_path / kind).mkdir()
-    (tmp_path / "settings.json").write_bytes(b"{}")
+@pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3', b'{"cell": {"world": 800}, "tests": {}}'])
+def test_a_damaged_cell_is_named(tmp_path, capsys, damage):
     path = tmp_path / "cells" / "800-1m-90deg-seed0.json"
-    path.write_bytes(damage)
+    for file, data in ((path, damage), (tmp_path / "costs" / path.name, b"{}"), (tmp_path / "settings.json", b"{}")):
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(data)
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path)])
     assert exit.value.code == 2
@@ -217,11 +230,19 @@ def test_a_damaged_cell_is_named(folder, tmp_path, capsys, damage):
     assert err.count("\n") == 1
 
 
+def test_a_cell_without_its_costs_is_named(folder, tmp_path, capsys):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("costs", "report"))
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(tmp_path / "one")])
+    assert exit.value.code == 2
+    assert f"{tmp_path / 'one' / 'cells'}" in capsys.readouterr().err
+
+
 def test_where_there_is_no_cell_the_command_says_so(tmp_path, capsys):
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path)])
     assert exit.value.code == 2
-    assert "expected cells of `python -m gnl table`, found none" in capsys.readouterr().err
+    assert f"{tmp_path / 'cells'}: expected cells of `python -m gnl table`, found none" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

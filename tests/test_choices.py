@@ -1,0 +1,76 @@
+"""Other choices than ours: each does what its name says, by hand and beside the parts that it stands in for."""
+
+import numpy as np
+import pytest
+
+from gnl import ablate, choices, episode
+from gnl.choices import CHOICES, BruteForce
+from gnl.kdtree import KDTree
+from gnl.nn import softmax
+from gnl.ranks import reciprocal_ranks
+from gnl.scene_graph import regions
+
+SCORES, POOLED = np.array([[0.0, 3, 1], [2, 0, 0]]), np.array([[0.7, 0.1, 0.2], [0, 0, 1.0]])
+
+
+def test_states_are_what_their_names_say():
+    first = reciprocal_ranks(SCORES)
+    np.testing.assert_allclose(choices.probabilities(SCORES, POOLED, None), softmax(SCORES), rtol=1e-6)
+    assert choices.best_place(SCORES, POOLED, None).tolist() == [[0, 1, 0], [1, 0, 0]]
+    np.testing.assert_array_equal(choices.filter_ranks(SCORES, POOLED, None), reciprocal_ranks(POOLED))
+    assert choices.with_last_action(SCORES, POOLED, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
+    after = choices.with_last_action(SCORES, POOLED, np.array([0, 2]))
+    np.testing.assert_array_equal(after[:, :3], first)
+    assert after[:, 3:].tolist() == [[0, 1, 0, 0], [0, 0, 0, 1]]
+
+
+def test_corners_join_regions_that_sides_do_not():
+    labels = np.kron(np.array([[[3, 0, 0], [0, 3, 4]]]), np.ones((1, 8, 8), int))
+    view, label, area, boxes = choices.touching_at_corners(labels)
+    assert sorted(zip(label.tolist(), area.tolist(), boxes.tolist(), strict=True)) == [
+        (0, 192, [0, 0, 24, 16]), (3, 128, [0, 0, 16, 16]), (4, 64, [16, 8, 24, 16])]
+    assert view.tolist() == [0, 0, 0]
+    several = choices.touching_at_corners(np.concatenate([labels, labels[:, ::-1]]))
+    assert several[0].tolist() == [0, 0, 0, 1, 1, 1]
+    np.testing.assert_array_equal(several[2][:3], area)
+    assert len(regions(labels)[0]) == 5  # two beds, and the wall is in two parts
+
+
+def test_the_sparse_reward_comes_at_the_end():
+    right = np.array([True, False, True, False])
+    assert choices.at_the_end(right, None, np.array([False, False, True, True])).tolist() == [0, 0, 1, -1]
+
+
+def test_a_likelihood_by_rank_is_the_reciprocal_rank_and_a_floor_below_it():
+    np.testing.assert_allclose(choices.by_rank(SCORES), reciprocal_ranks(SCORES) + 1e-3, rtol=1e-6)
+    assert choices.by_rank(SCORES)[0].argmax() == 1
+
+
+def test_of_equal_actions_the_first_is_taken_and_of_others_the_best():
+    assert choices.first_of_equals(np.array([[1.0, 2, 2], [3, 3, 3], [0, -1, 5]]), None).tolist() == [1, 0, 2]
+
+
+def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
+    brute = BruteForce(3)
+    brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))
+    assert brute.find(np.float32([[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0.01, 1]])).tolist() == [1, 0, -1, -1]
+
+
+def test_brute_force_answers_like_the_tree():
+    rng, brute, tree = np.random.default_rng(0), BruteForce(5), KDTree(5)
+    points = rng.random((40, 5), np.float32)
+    points[7] = points[3]
+    for part in np.array_split(points, 3):
+        np.testing.assert_array_equal(brute.add(part), tree.add(part))
+    queries = np.concatenate([rng.random((6, 5), np.float32), points[:4]])
+    for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2), (4, None)):
+        mine, trees = brute.query(queries, k, n_first), tree.query(queries, k, n_first)
+        np.testing.assert_allclose(mine[0], trees[0], atol=1e-3)
+        np.testing.assert_array_equal(mine[1], trees[1])
+
+
+def test_the_floor_of_a_choice_is_the_likelihood_of_what_is_ruled_out():
+    for choice in CHOICES:
+        if choice.point == "floor of the likelihood":
+            with ablate.in_place(choice.constants):
+                assert episode.probability(np.array([[0.0, 500]]))[0, 0] == pytest.approx(float(choice.other))
