@@ -12,7 +12,7 @@ import json
 import platform
 import resource
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 
 import numpy as np
@@ -54,7 +54,7 @@ def run_cell(cell, senses, starts, settings=None):
     settings : a dict that goes into the outcomes with what identifies home, net and GCN
     returns  : the outcomes, and what they cost, both as dicts for JSON
     """
-    began = now()
+    began, senses = now(), replace(senses, seconds={}, views=0)
     robot, grid = Robot(senses.world), PlaceGrid(senses.world)
     learning, racing, testing, validating = np.random.SeedSequence(cell.entropy).spawn(4)
     training = starts["training"]

@@ -60,6 +60,17 @@ def load_arrays(path):
     return arrays, made_by
 
 
+def load_json(path, what):
+    """The dict in a JSON file; ValueError that names the file, and `what` it should hold."""
+    try:
+        found = json.loads(Path(path).read_bytes())
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{path}: expected {what}, found {error}") from None
+    if not isinstance(found, dict):
+        raise ValueError(f"{path}: expected {what}, found a {type(found).__name__}")
+    return found
+
+
 def check_params(path, params, wanted):
     """ValueError if the arrays of a file differ from those `wanted` in name, shape or being numbers."""
     for name in wanted | params:

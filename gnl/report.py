@@ -1,6 +1,5 @@
 """The report on Table I, from the files of its cells alone: Markdown, and the pictures of draw_charts.py."""
 
-import json
 from collections import Counter
 from pathlib import Path
 
@@ -8,8 +7,8 @@ import numpy as np
 
 from . import draw, draw_charts
 from .compare import episodes_needed, mcnemar, over_cells
-from .experiment import GAPS_DEG, GAPS_M, adapted, curve, latest_best, right
-from .files import write_whole
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, adapted, curve, latest_best, right
+from .files import load_json, write_whole
 from .paper import VIEW_MS, table_1
 from .terminal import Stage
 
@@ -44,17 +43,24 @@ def load(out):
     if not paths:
         raise ValueError(f"{Path(out) / 'cells'}: expected cells of `python -m gnl table`, found none")
     cells = sorted((load_cell(path) for path in paths), key=lambda cell: tuple(cell[0]["cell"].values()))
-    return *map(list, zip(*cells, strict=True)), json.loads((Path(out) / "settings.json").read_bytes())
+    settings = load_json(Path(out) / "settings.json", "the settings of a table")
+    if not {"episodes", "tests"} <= settings.keys():
+        raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
+    return *map(list, zip(*cells, strict=True)), settings
 
 
 def load_cell(path):
     """Outcomes and costs of one cell."""
+    what = "the outcomes of a cell and their costs"
+    result, costs = load_json(path, what), load_json(path.parents[1] / "costs" / path.name, what)
     try:
-        result = json.loads(path.read_bytes())
-        right(result)
-        return result, json.loads((path.parents[1] / "costs" / path.name).read_bytes())
-    except (ValueError, KeyError, TypeError, IndexError, OSError) as error:
-        raise ValueError(f"{path}: expected the outcomes of a cell and their costs, found {error}") from None
+        curve([result])
+        cost([costs])
+        if len(result["checkpoints"]) != N_CHECKPOINTS:
+            raise ValueError(f"{len(result['checkpoints'])} checkpoints")
+    except (ValueError, KeyError, TypeError, IndexError) as error:
+        raise ValueError(f"{path}: expected {what}, found {error!r}") from None
+    return result, costs
 
 
 def sections(results, costs, settings):
@@ -178,7 +184,7 @@ def adaptation(results):
     rows = [["chosen", *np.bincount(chosen, minlength=len(results[0]["checkpoints"]))],
             ["best on the tests", *np.bincount(best, minlength=len(results[0]["checkpoints"]))]]
     gain = [right(result)["DA"].mean() - right(result)["Ours"].mean() for result in results]
-    early = [g for g, c in zip(gain, chosen, strict=True) if c < chosen.max() // 2]
+    early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
     text = f"DA - Ours {' '.join(interval(gain))}"
     if early:
         text += f"; where an early one was chosen ({len(early)} cells) {' '.join(interval(early))}"

@@ -12,7 +12,7 @@ from pathlib import Path
 from . import learned
 from .episode import Senses
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
-from .files import load_arrays, write_whole
+from .files import load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
 from .photo import check_noise
 from .terminal import Stage, processes
@@ -81,7 +81,7 @@ def run_jobs(out, jobs, n_episodes, pool, stage):
     waiting = {pool.submit(*job): name for name, job in jobs.items()}
     while waiting:
         ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
-        for future in ready:
+        for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
             name, (result, costs) = waiting.pop(future), future.result()
             write_whole(out / "costs" / f"{name}.json", to_bytes(costs))
             write_whole(path_of(out, name), to_bytes(result))
@@ -159,7 +159,7 @@ def gap_of(name):
 def agree(path, settings):
     """Write the settings of a folder of results; ValueError if it holds results of other ones."""
     if path.exists():
-        there = json.loads(path.read_bytes())
+        there = load_json(path, "settings")
         for name, value in settings.items():
             if there.get(name) != value:
                 raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "

@@ -230,12 +230,18 @@ def test_a_damaged_cell_is_named(tmp_path, capsys, damage):
     assert err.count("\n") == 1
 
 
-def test_a_cell_without_its_costs_is_named(folder, tmp_path, capsys):
-    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("costs", "report"))
+@pytest.mark.parametrize("damage", [None, b"", b"{}", b"[1]"])
+@pytest.mark.parametrize("name", ["settings.json", "costs/800-1m-90deg-seed0.json"])
+def test_damaged_settings_and_costs_are_named(folder, tmp_path, capsys, name, damage):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
+    path = tmp_path / "one" / name
+    path.unlink() if damage is None else path.write_bytes(damage)
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path / "one")])
+    err = capsys.readouterr().err
     assert exit.value.code == 2
-    assert f"{tmp_path / 'one' / 'cells'}" in capsys.readouterr().err
+    assert path.name in err
+    assert err.count("\n") == 1
 
 
 def test_where_there_is_no_cell_the_command_says_so(tmp_path, capsys):

@@ -163,6 +163,16 @@ def test_results_of_other_settings_are_refused_by_the_name_of_the_setting(refere
     assert cells(reference.folder) == reference.cells
 
 
+@pytest.mark.parametrize("damage", [b"", b"[1]", b'{"episodes": 10'])
+def test_damaged_settings_are_named(tmp_path, capsys, damage):
+    (tmp_path / "settings.json").write_bytes(damage)
+    assert main_here(tmp_path) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(f"python -m gnl: {tmp_path / 'settings.json'}: expected settings, found ")
+    assert err.count("\n") == 1
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [damage]
+
+
 def test_where_nobody_listens_is_one_line(prepared, capsys):
     import dask
 
