@@ -3,7 +3,6 @@
 import ast
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -167,7 +166,6 @@ def test_the_pictures_go_where_they_are_told_to(tmp_path, runs, views, capsys):
     assert files(runs.out).keys() == runs.second.files.keys()
 
 
-@pytest.mark.skipif(not shutil.which("make"), reason="no make here")
 @pytest.mark.parametrize(("plan", "folder"), [("", "out/demo"), ("a/flat.json", "out/demo-flat"),
                                               ("/my homes/the old, flat.v2.json", "out/demo-the old, flat.v2")])
 def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
