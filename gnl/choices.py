@@ -31,6 +31,7 @@ class Choice:
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
     anew: bool = False
+    luck: bool = False  # the same choice as ours, but another seed of the training
 
 
 def probabilities(scores, _pooled, _actions):
@@ -139,7 +140,10 @@ CHOICES = [
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
+    Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
+    Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
     Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),
     Choice("order of learning", "one robot at a time", constants={"episode.SIDE_BY_SIDE": 1}),
+    Choice("luck of the training", "another seed", luck=True),
 ]
 OURS, TRUE_LABELS = Choice("all", "ours"), CHOICES[0]

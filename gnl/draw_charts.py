@@ -1,16 +1,19 @@
-"""Charts of the report: a heat map of the gaps, learning curves, a histogram of checkpoints.
+"""Charts: a heat map of the gaps, learning curves and other lines, a histogram of checkpoints.
 
 Blue is better, orange worse; a colour never stands without its number or name.
 """
+
+import itertools
 
 import numpy as np
 
 from .compare import over_cells
 from .draw import sheet
-from .floor_map import BAR, FAINT, INK, PAPER, QUIET, Canvas
+from .floor_map import BAR, BELIEF, FAINT, INK, PAPER, QUIET, ROBOT, Canvas
 
 BETTER, WORSE = np.array([0, 114, 178]), np.array([213, 94, 0])
-LINES = {"Ours": (0, 114, 178), "MV": (112, 116, 124), "Scan": (0, 140, 100)}
+LINES = {"Ours": (0, 114, 178), "MV": (112, 116, 124), "Scan": (0, 140, 100), "Ours+": (213, 94, 0)}
+USUAL = BELIEF, ROBOT, INK, QUIET
 CELL_PX, RIM_PX, STRONGEST = (54, 34), (64, 44), 15.0  # points at which a colour is full
 
 
@@ -47,37 +50,56 @@ def shade(value):
 def curves(of_world, width=300, height=190):
     """Right answers by checkpoint with 95 % intervals: {world: {method: (C, checkpoints) in 0..1}}."""
     both = np.concatenate([values.ravel() for methods in of_world.values() for values in methods.values()])
-    low, high = 10 * np.floor(10 * both.min()), 10 * np.ceil(10 * both.max())
-    return sheet([_curves(methods, low, high, width, height) for methods in of_world.values()],
-                 [f"home {world}: right after five looks" for world in of_world])
+    low, high = 10 * int(np.floor(10 * both.min())), 10 * max(int(np.ceil(10 * both.max())), int(np.floor(10 * both.min())) + 1)
+    pictures = []
+    for methods in of_world.values():
+        n, of_name = next(iter(methods.values())).shape[1], {}
+        for name, values in methods.items():
+            mean, below, above = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
+            of_name[name] = (range(n), mean, below, above) if name == "Ours" else (range(n), mean)
+        pictures.append(lines(of_name, {i: str(i + 1) for i in range(n)},
+                              {percent: f"{percent} %" for percent in range(low, high + 1, 10)}, "checkpoint",
+                              width, height, LINES))
+    return sheet(pictures, [f"home {world}: right after five looks" for world in of_world])
 
 
-def _curves(methods, low, high, width, height):
-    left, right, bottom = 44, 52, 40
-    page, n = Canvas(width, height), next(iter(methods.values())).shape[1]
+def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), names_px=52, y_name=""):
+    """Lines, each with its name at its end; x_ticks, y_ticks: {value: words}, from the least to the greatest.
 
-    def at(checkpoint, percent):
-        x = left + (width - left - right) * checkpoint / max(1, n - 1)
-        return x, 8 + (height - bottom - 8) * (high - percent) / max(high - low, 1)
+    of_name  : {name: (x, y)}, or (x, y, low, high) for a band around the line; of one point, a dot
+    colours  : {name: colour}; of others the usual ones in turn
+    names_px : room for the names at the right
+    """
+    left, top, bottom = 44, 8 + 18 * bool(y_name), 40
+    page, (x0, *_, x1), (y0, *_, y1) = Canvas(width, height), list(x_ticks), list(y_ticks)
 
-    for percent in range(int(low), int(high) + 1, 10):
-        page.line([at(0, percent), at(n - 1, percent)], FAINT)
-        page.text((left - 8, at(0, percent)[1]), f"{percent} %", 11, QUIET, "rm")
-    for i in range(n):
-        page.text((at(i, low)[0], height - bottom + 12), str(i + 1), 11, QUIET, "mm")
-    page.text((left + (width - left - right) / 2, height - 10), "checkpoint", 12, QUIET, "mm")
+    def at(x, y):
+        return (left + (width - left - names_px) * (x - x0) / (x1 - x0),
+                top + (height - bottom - top) * (y1 - y) / (y1 - y0))
+
+    for y, words in y_ticks.items():
+        page.line([at(x0, y), at(x1, y)], FAINT)
+        page.text((left - 8, at(x0, y)[1]), words, 11, QUIET, "rm")
+    for x, words in x_ticks.items():
+        page.text((at(x, y0)[0], height - bottom + 12), words, 11, QUIET, "mm")
+    page.text((left + (width - left - names_px) / 2, height - 10), x_name, 12, QUIET, "mm")
+    page.text((8, 10), y_name, 12, QUIET)
+    colour_of = dict(zip(of_name, itertools.cycle(USUAL), strict=False)) | dict(colours)
     taken = []  # heights of the names, the upper one first so that they keep the order of their lines
-    for name, values in sorted(methods.items(), key=lambda item: -item[1][:, -1].mean()):
-        mean, below, above = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
-        if name == "Ours":
-            band = [at(i, v) for i, v in enumerate(above)] + [at(i, v) for i, v in enumerate(below)][::-1]
-            page.polygon(band, (*LINES[name], 50))
-        page.line([at(i, v) for i, v in enumerate(mean)], LINES[name], 2)
-        y = at(n - 1, mean[-1])[1]
-        while any(abs(y - other) < 13 for other in taken):
-            y += 1
-        taken.append(y)
-        page.text((at(n - 1, 0)[0] + 6, y), name, 12, LINES[name])
+    for name, (x, y, *band) in sorted(of_name.items(), key=lambda item: -item[1][1][-1]):
+        spots = [at(*spot) for spot in zip(x, y, strict=True)]
+        if band:
+            low, high = ([at(*spot) for spot in zip(x, edge, strict=True)] for edge in band)
+            page.polygon(high + low[::-1], (*colour_of[name], 50))
+        if len(spots) > 1:
+            page.line(spots, colour_of[name], 2)
+        else:
+            page.disc(spots[0], 4, colour_of[name])
+        height_of_name = spots[-1][1]
+        while any(abs(height_of_name - other) < 13 for other in taken):
+            height_of_name += 1
+        taken.append(height_of_name)
+        page.text((spots[-1][0] + 6, height_of_name), name, 12, colour_of[name])
     return page.picture()
 
 

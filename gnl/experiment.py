@@ -92,7 +92,7 @@ def strings(right):
 
 def arrays(strings):
     """The other way round: T strings -> (n, T) bool."""
-    return np.array([[one == "1" for one in look] for look in strings]).T
+    return np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T == ord("1")
 
 
 def now():
@@ -123,11 +123,11 @@ def right(result, what="place", checkpoint=-1):
 
 
 def curve(results):
-    """Right answers of NNQL at each checkpoint, of MV and Scan, by cell: {method: (C, checkpoints)}."""
+    """Right answers of NNQL at each checkpoint, and of the other planners, by cell: {method: (C, checkpoints)}."""
     n = len(results[0]["checkpoints"])
     ours = [[right(result, checkpoint=i)["Ours"].mean() for i in range(n)] for result in results]
     return {"Ours": np.array(ours)} | {name: np.array([[right(result)[name].mean()] * n for result in results])
-                                       for name in ("MV", "Scan")}
+                                       for name in results[0]["tests"]}
 
 
 def adapted(result):

@@ -32,6 +32,11 @@ def epsilon(episode):
     return 1 / (0.1 * (np.asarray(episode) + 1) + 1)
 
 
+def first_value(mean):
+    """Q of a pair that is not stored yet, before equation 2 changes it; from the mean of its neighbours."""
+    return mean  # CHOICE: the paper does not say where a new pair starts; ours starts where equation 1 leaves it.
+
+
 @dataclass(frozen=True)
 class Neighbours:
     """N(s, a) of B states and one action, nearest first, ties to the older pair."""
@@ -124,10 +129,9 @@ class NNQL:
             if pair[i] >= 0:
                 values[pair[i]] += self.alpha * (target[i] - values[pair[i]])
                 continue
-            # CHOICE: a new pair is stored with Q + alpha (target - Q), Q the mean of its neighbours, 0 without any.
             new = born.setdefault(state.tobytes(), len(births))  # the second robot to meet it finds it there
             if new == len(births):
-                births.append(q[i])
+                births.append(first_value(q[i]))
             births[new] += self.alpha * (target[i] - births[new])
         if births:
             newborn = np.stack([np.frombuffer(key, states.dtype) for key in born])

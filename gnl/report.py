@@ -42,7 +42,12 @@ def load(out):
     paths = sorted(Path(out).glob("cells/*.json"))
     if not paths:
         raise ValueError(f"{Path(out) / 'cells'}: expected cells of `python -m gnl table`, found none")
-    cells = sorted((load_cell(path) for path in paths), key=lambda cell: tuple(cell[0]["cell"].values()))
+    cells = [load_cell(path) for path in paths]
+    for path, (result, _) in zip(paths, cells, strict=True):
+        if result["tests"].keys() != cells[0][0]["tests"].keys():
+            raise ValueError(f"{path}: expected tests of {', '.join(cells[0][0]['tests'])}, as in {paths[0].name}, "
+                             f"found those of {', '.join(result['tests'])}")
+    cells.sort(key=lambda cell: tuple(cell[0]["cell"].values()))
     settings = load_json(Path(out) / "settings.json", "the settings of a table")
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
@@ -65,7 +70,7 @@ def load_cell(path):
 
 def sections(results, costs, settings):
     """The parts of the report, each a piece of Markdown."""
-    methods = [name for name in SHOWN if name in right(results[0])]
+    methods = methods_of(results)
     n_tests = sum(len(right(result)["MV"]) for result in results)
     yield "# Table I, run again"
     yield (f"{len(results)} cells, {settings['episodes']} training episodes and {settings['tests']} tests each; "
@@ -133,8 +138,16 @@ def means(results, methods):
     return "The paper's means of the same cells in brackets.\n\n" + markdown(["", *methods], rows)
 
 
+def methods_of(results):
+    """What was tested, in the order of the report: the known methods first, then planners of one's own."""
+    there = right(results[0])
+    return [*(name for name in SHOWN if name in there), *(name for name in there if name not in SHOWN)]
+
+
 def pairs_of(methods):
-    return [(a, b) for a, b in PAIRS if a in methods and b in methods]
+    """Which methods are subtracted; a planner of one's own from chance and from the best fixed sequence."""
+    pairs = [*PAIRS, *((name, other) for name in methods if name not in SHOWN for other in ("MV", "Scan"))]
+    return [(a, b) for a, b in pairs if a in methods and b in methods]
 
 
 def differences(results, methods):

@@ -36,7 +36,7 @@ def parts():
 
 def constants():
     """What the modules that choices reach into hold now."""
-    modules = camera, episode, gcn, particles, planners, scene_graph, strip
+    modules = camera, episode, gcn, nnql, particles, planners, scene_graph, strip
     return {(module.__name__, name): str(value) for module in modules for name, value in vars(module).items()
             if not name.startswith("__")}
 
@@ -89,6 +89,21 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     assert (senses.net, senses.gcn, senses.views, camera.HEIGHT_M) == ({"weights": 1}, gcn, parts[0].views, height)
 
 
+def test_luck_of_the_training_changes_its_seed_alone(parts, monkeypatch):
+    seeds = []
+    for name in ("train_nnql", "run_all"):
+        def watched(*args, name=name, real=getattr(episode, name), **options):
+            seeds.append((name, next(arg.spawn_key for arg in args if isinstance(arg, np.random.SeedSequence))))
+            return real(*args, **options)
+
+        monkeypatch.setattr(episode, name, watched)
+    for choice in (OURS, Choice("a point", "b", luck=True)):
+        ablate.measure(choice, CELL, *parts)
+    (ours, *tests), (luck, *others) = seeds[:3], seeds[3:]
+    assert ours[1] != luck[1]
+    assert tests == others
+
+
 def test_a_constant_is_another_one_for_a_time_and_then_ours_again_even_after_a_fault():
     ours = camera.HEIGHT_M
     with pytest.raises(KeyError), ablate.in_place({"camera.HEIGHT_M": 0.7}):
@@ -119,9 +134,9 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
             assert len(changed) == len(choice.constants)
             assert camera.FIELD_OF_VIEW_RAD == strip.FIELD_OF_VIEW_RAD
         assert choice.true_labels >= any("camera" in name for name in choice.constants)  # no net knows such views
-        changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels))
+        changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck))
         assert choice.store.get("k") != nnql.K_NEIGHBOURS
-    ours = OURS.rules, OURS.store, OURS.motion, {}, False
+    ours = OURS.rules, OURS.store, OURS.motion, {}, False, False
     assert all(one != other for one, other in itertools.combinations([ours, *changes], 2))
 
 

@@ -201,7 +201,7 @@ def test_the_pictures_show_the_same_numbers_as_the_text(folder, cells, tmp_path,
         assert shown["heat_maps"][world][tuple(gap)] == pytest.approx(100 * (of["Ours"] - of["MV"]).mean())
     assert shown["histogram"] == Counter(of["chosen"] for of in cells.values())
     for world, curves in shown["curves"].items():
-        for name in ("Ours", "MV", "Scan"):
+        for name in ("Ours", "MV", "Scan", "Ours+"):
             of_world = [of[name].mean() for (home, *_), of in cells.items() if home == world]
             assert sorted(curves[name][:, -1]) == pytest.approx(sorted(of_world))
 
@@ -242,6 +242,39 @@ def test_damaged_settings_and_costs_are_named(folder, tmp_path, capsys, name, da
     assert exit.value.code == 2
     assert path.name in err
     assert err.count("\n") == 1
+
+
+def with_a_planner(folder, to, cells):
+    """A copy of the folder, "no return" tested in the cells that match, and always right."""
+    shutil.copytree(folder, to, ignore=shutil.ignore_patterns("report"))
+    for path in to.glob(f"cells/{cells}"):
+        result = json.loads(path.read_bytes())
+        result["tests"]["no return"] = {what: ["1" * N] * 5 for what in ("place", "location")}
+        path.write_bytes(to_bytes(result))
+    return to
+
+
+def test_a_planner_of_ones_own_stands_beside_the_others(folder, cells, tmp_path):
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(with_a_planner(folder, tmp_path / "own", "*"))])
+    assert exit.value.code == 0
+    written = (tmp_path / "own" / "report" / "report.md").read_text()
+    assert row(section(written, "Means"), "")[1:] == [*METHODS, "no return"]
+    assert row(section(written, "Means"), "all")[-1] == "100.0"
+    for other in ("MV", "Scan"):
+        points = row(section(written, "Differences in pairs"), f"no return - {other}")[1]
+        assert float(points) == near(100 - 100 * np.mean([of[other].mean() for of in cells.values()]))
+
+
+def test_cells_with_and_without_a_planner_are_not_mixed(folder, tmp_path, capsys):
+    own = with_a_planner(folder, tmp_path / "own", "*90deg*")
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(own)])
+    assert exit.value.code == 2
+    err = capsys.readouterr().err
+    assert re.search(r"800-0.2m-90deg-seed0.json: expected tests of .* as in 800-0.2m-10deg-seed0.json, found .*no re", err)
+    assert err.count("\n") == 1
+    assert not (own / "report").exists()
 
 
 def test_where_there_is_no_cell_the_command_says_so(tmp_path, capsys):

@@ -1,7 +1,9 @@
 """The tutorials: every chapter runs and says what it prints, every grader tells right answers from wrong ones."""
 
+import ast
 import importlib.util
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -28,6 +30,7 @@ def load(path):
 runner = load(TUTORIALS / "run.py")
 grader = load(TUTORIALS / "exercises" / "grader.py")
 CHAPTERS = runner.chapters()
+PAGES = [ROOT / "README.md", *sorted(TUTORIALS.glob("*.md"))]
 EXERCISES = sorted((TUTORIALS / "exercises").glob("ex_*.py"))
 
 
@@ -118,6 +121,53 @@ def test_a_chapter_states_each_of_its_exercises_with_a_hint(exercises):
     assert 3 <= len(tasks) <= 5
     assert all(re.search(rf"\b{re.escape(task)}\b", text) for task in tasks)
     assert text.count("<details>") == text.count("</details>") >= len(tasks)
+
+
+def shell_commands(page):
+    """Lines of the sh fences of a page, comments left out."""
+    fences = re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+    return [line.partition("#")[0].split() for fence in fences for line in fence.splitlines() if line.strip()]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_the_commands_of_a_page_are_there(page):
+    targets = set(re.findall(r"^([\w ]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    known, variables = {name for names in targets for name in names.split()}, (ROOT / "Makefile").read_text()
+    for program, *words in shell_commands(page):
+        if program == "make":
+            settings = [word for word in words if "=" in word]
+            assert set(words) - set(settings) <= known
+            assert all(re.search(rf"^{word.partition('=')[0]} \?=", variables, re.MULTILINE) for word in settings)
+        else:
+            assert program in (".venv/bin/python", "python")
+            if words[0] == "-m":
+                help_ = subprocess.run([sys.executable, *words[:3], "--help"], capture_output=True, text=True, cwd=ROOT)
+                assert help_.returncode == 0
+                assert [word for word in words if word.startswith("--") and word not in help_.stdout] == []
+            else:
+                assert (ROOT / words[0]).exists()
+
+
+def test_the_blocks_of_the_readme_run():
+    runner.run(ROOT / "README.md", ROOT)
+
+
+def public_names(path):
+    """Functions, classes and methods of a module, what begins with _ left out."""
+    def public(nodes):
+        return [node for node in nodes
+                if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")]
+
+    for node in public(ast.parse(path.read_text()).body):
+        yield from (part.name for part in (node, *public(node.body if isinstance(node, ast.ClassDef) else [])))
+
+
+def test_each_public_function_of_the_library_is_named_in_some_chapter():
+    code = [part for chapter in CHAPTERS for part in re.findall(r"```.*?```|`[^`\n]+`", chapter.read_text(), re.DOTALL)]
+    named = set(re.findall(r"\w+", "\n".join(code)))
+    library = {path.name: set(public_names(path)) for path in (ROOT / "gnl").glob("*.py")}
+    assert sum(map(len, library.values())) > 300
+    assert {module: names - named for module, names in library.items() if names - named} == {}
 
 
 def test_right_answers_are_counted_and_wrong_ones_are_told_with_what_was_got_and_expected(capsys):
