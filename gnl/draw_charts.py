@@ -48,19 +48,18 @@ def shade(value):
 
 
 def curves(of_world, width=300, height=190):
-    """Right answers by checkpoint with 95 % intervals: {world: {method: (C, checkpoints) in 0..1}}."""
-    both = np.concatenate([values.ravel() for methods in of_world.values() for values in methods.values()])
-    low, high = 10 * int(np.floor(10 * both.min())), 10 * max(int(np.ceil(10 * both.max())), int(np.floor(10 * both.min())) + 1)
-    pictures = []
-    for methods in of_world.values():
-        n, of_name = next(iter(methods.values())).shape[1], {}
+    """Right answers by checkpoint, Ours with its 95 % interval: {world: {method: (C, checkpoints) in 0..1}}."""
+    plots = {}
+    for world, methods in of_world.items():
+        n, plots[world] = next(iter(methods.values())).shape[1], {}
         for name, values in methods.items():
-            mean, below, above = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
-            of_name[name] = (range(n), mean, below, above) if name == "Ours" else (range(n), mean)
-        pictures.append(lines(of_name, {i: str(i + 1) for i in range(n)},
-                              {percent: f"{percent} %" for percent in range(low, high + 1, 10)}, "checkpoint",
-                              width, height, LINES))
-    return sheet(pictures, [f"home {world}: right after five looks" for world in of_world])
+            mean, *band = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
+            plots[world][name] = range(n), mean, *(band if name == "Ours" else [])
+    shown = np.concatenate([line for plot in plots.values() for _, *of_name in plot.values() for line in of_name])
+    low, high = 10 * int(shown.min() // 10), 10 * int(shown.max() // 10 + 1)
+    ticks = {i: str(i + 1) for i in range(n)}, {percent: f"{percent} %" for percent in range(low, high + 1, 10)}
+    return sheet([lines(plot, *ticks, "checkpoint", width, height, LINES) for plot in plots.values()],
+                 [f"home {world}: right after five looks" for world in plots])
 
 
 def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), names_px=52, y_name=""):

@@ -92,7 +92,8 @@ def strings(right):
 
 def arrays(strings):
     """The other way round: T strings -> (n, T) bool."""
-    return np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T == ord("1")
+    characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T
+    return characters == ord("1")
 
 
 def now():

@@ -47,7 +47,7 @@ def load(out):
         if result["tests"].keys() != cells[0][0]["tests"].keys():
             raise ValueError(f"{path}: expected tests of {', '.join(cells[0][0]['tests'])}, as in {paths[0].name}, "
                              f"found those of {', '.join(result['tests'])}")
-    cells.sort(key=lambda cell: tuple(cell[0]["cell"].values()))
+    cells.sort(key=lambda cell: [cell[0]["cell"][name] for name in ("world", "t_xy_m", "t_theta_deg", "seed")])
     settings = load_json(Path(out) / "settings.json", "the settings of a table")
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")

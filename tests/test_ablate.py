@@ -91,8 +91,8 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
 
 def test_luck_of_the_training_changes_its_seed_alone(parts, monkeypatch):
     seeds = []
-    for name in ("train_nnql", "run_all"):
-        def watched(*args, name=name, real=getattr(episode, name), **options):
+    for name, real in (("train_nnql", episode.train_nnql), ("run_all", episode.run_all)):
+        def watched(*args, name=name, real=real, **options):
             seeds.append((name, next(arg.spawn_key for arg in args if isinstance(arg, np.random.SeedSequence))))
             return real(*args, **options)
 

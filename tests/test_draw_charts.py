@@ -107,3 +107,26 @@ def test_a_histogram_has_bars_as_high_as_they_are_many_each_in_its_place():
     assert first[2][1] == seventh[2][1]  # they stand on one line
     assert seventh[0][0] + 210 - first[0][0] == pytest.approx(6 * (420 - 32) / 10, abs=1)
     assert seventh[1][1] < 30  # the highest fills the picture
+
+
+def test_lines_begin_and_end_at_their_ticks_and_one_point_is_a_dot(written):
+    ticks = {0: "none", 10: "all"}, {0.0: "0", 1.0: "1"}
+    picture = draw_charts.lines({"slope": ((0, 10), (0.0, 1.0)), "dot": ((10,), (0.5,))}, *ticks, "x", y_name="y",
+                                colours={"slope": (0, 200, 0), "dot": (200, 0, 0)})
+    at = {words: (x, y) for x, y, words in written}
+    inside = np.array(picture)[:, :460 - 52 + 1]  # without the names at the right
+    _, upper_left, lower_right, _ = spots(inside, (0, 200, 0))
+    assert (upper_left[0], lower_right[0]) == pytest.approx((at["none"][0], at["all"][0]), abs=2)
+    assert (upper_left[1], lower_right[1]) == pytest.approx((at["1"][1], at["0"][1]), abs=2)
+    middle, first, last, _ = spots(np.array(picture)[:, :460 - 52 + 5], (200, 0, 0))
+    assert middle == pytest.approx((at["all"][0], (at["1"][1] + at["0"][1]) / 2), abs=1.5)
+    assert last[1] - first[1] == pytest.approx(8, abs=2)
+    assert at["slope"][1] < at["dot"][1]
+    assert at["y"][1] < at["1"][1]
+
+
+def test_lines_take_the_usual_colours_in_turn():
+    picture = np.array(draw_charts.lines({"a": ((0, 1), (0.2, 0.2)), "b": ((0, 1), (0.8, 0.8))}, {0: "0", 1: "1"},
+                                         {0: "0", 1: "1"}, "x"))
+    (_, a), (_, b) = (spots(picture[:, 50:400], colour)[0] for colour in draw_charts.USUAL[:2])
+    assert a > b

@@ -1,0 +1,54 @@
+"""The full run: all cells are there, and what pages say of it is what the cells say."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from gnl.__main__ import main
+from gnl.table import GAPS, WORLDS
+
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "tutorials" / "results"
+REPORT = (RESULTS / "report.md").read_text()
+
+
+def row(text, first):
+    """The other cells of the first table row whose first one is this."""
+    table = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
+    return next(cells[1:] for cells in table if cells[0] == first)
+
+
+def test_every_cell_of_the_paper_is_there_at_its_scale():
+    cells = [json.loads(path.read_bytes()) for path in RESULTS.glob("cells/*.json")]
+    found = {(of["cell"]["world"], f"{of['cell']['t_xy_m']}/{of['cell']['t_theta_deg']}") for of in cells}
+    assert found == {(world, gap) for world in WORLDS for gap in GAPS}
+    assert len(cells) == 75
+    for of in cells:
+        assert (of["settings"]["episodes"], of["settings"]["tests"], len(of["checkpoints"])) == (10_000, 100, 10)
+        assert {len(look) for outcome in of["tests"].values() for look in outcome["place"]} == {100}
+
+
+def test_the_report_is_what_the_cells_say(tmp_path):
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(RESULTS), "--to", str(tmp_path)])
+    assert exit.value.code == 0
+    assert (tmp_path / "report.md").read_text() == REPORT
+    for path in tmp_path.glob("*.png"):
+        drawn, kept = (np.array(Image.open(folder / path.name)).astype(int) for folder in (tmp_path, RESULTS))
+        assert abs(drawn - kept).mean() < 1
+
+
+def test_the_readme_says_what_the_report_says():
+    readme = (ROOT / "README.md").read_text().partition("## Table I, run again")[2].partition("\n## ")[0]
+    means = dict(zip(row(REPORT, ""), row(REPORT, "all"), strict=True))
+    assert row(readme, "75 cells") == [means[name] for name in row(readme, "")]
+    said = [line for line in readme.splitlines() if re.match(r"\| \S+ - \S+ \|", line)]
+    assert len(said) > 3
+    papers = REPORT.partition("## The paper's own cells")[2]
+    for name, *numbers in ([cell.strip() for cell in line.split("|")[1:-1]] for line in said):
+        assert numbers[0] == " ".join(row(REPORT, name)[:2])
+        assert numbers[1] == (" ".join(row(papers, name)[:2]) if f"| {name} |" in papers.partition("\n## ")[0] else "")
