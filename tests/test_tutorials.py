@@ -74,7 +74,8 @@ def test_a_page_runs_in_its_folder_and_leaves_the_current_one_as_it_was(tmp_path
 def test_a_chapter_runs_says_what_it_prints_and_draws_its_figures(chapter, tmp_path):
     folder = tmp_path / "tutorials"
     (folder / "figures").mkdir(parents=True)
-    (tmp_path / "data_gen").symlink_to(ROOT / "data_gen")  # what a chapter finds beside its folder
+    (tmp_path / "data_gen").symlink_to(ROOT / "data_gen")  # what a chapter finds beside its folder, and in it
+    (folder / "results").symlink_to(TUTORIALS / "results")
     runner.run(chapter, folder)
     drawn = {path.name for path in (folder / "figures").iterdir()}
     shown = set(re.findall(r"\(figures/([^)]+)\)", chapter.read_text()))
