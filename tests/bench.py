@@ -167,7 +167,7 @@ def neighbours(table, rng):
                    ("BLAS product with all", one_by_one(nearest_by_product), 64, None, None),
                    *([("scipy cKDTree", one_by_one(tree.query), 64, None, None)] if tree else []))
         table.race(f"4 nearest of {n:,}, 64 queries", at_once(index.query), 64,
-                   ("faiss IndexFlatL2", faiss and at_once(flat.search), 64, None, None))
+                   ("faiss IndexFlatL2", faiss and at_once(flat.search), 64, goal, stretch))
 
 
 def steps(table, world, rng):
