@@ -35,7 +35,8 @@ SIZES = ("small", "medium", "large")
 LOCATIONS = ("upper left", "upper centre", "upper right", "left", "centre", "right",
              "lower left", "lower centre", "lower right")
 MARKS = {  # what stands for what on a map and in a strip, drawn at a place of a page
-    "start": lambda page, x, y: page.arrow((x - 1, y), 0.4, 14, ROBOT),
+    "start": lambda page, x, y: page.arrow((x - 1, y), 0.4, 14, QUIET),
+    "pale": lambda page, x, y: page.box(x - 7, y - 6, x + 7, y + 7, colour_of(N_CLASSES - 1, 70), QUIET),
     "robot": lambda page, x, y: page.dial((x, y), 0.4, 7, ROBOT),
     "sight": lambda page, x, y: page.polygon([(x - 7, y), (x + 7, y - 7), (x + 7, y + 7)], (*ROBOT, 40), (*ROBOT, 160)),
     "particles": lambda page, x, y: [page.disc((x + dx, y + dy), 1.5, BELIEF) for dx, dy in ((-4, 2), (0, -3), (4, 3))],
@@ -50,13 +51,15 @@ def home(world, width_px=640, grid=None, starts=(), shown=None):
     """A home from above, the cells of its places, poses as little arrows, one of them `shown`; below what is what."""
     plan, marks = Map(world, width_px, grid=grid), {}
     if len(starts):
-        plan.starts(starts)
+        plan.starts(starts, QUIET)
         marks["start"] = f"the {len(starts)} starts of the test"
     plan.names()
     if shown is not None:
         plan.sight(shown)
         plan.robot(shown)
         marks |= {"robot": "the start of the other pictures", "sight": "what is seen from there"}
+    if plan.any_pale:
+        marks["pale"] = "pale: hangs overhead or lies flat"
     keys = [legend(np.unique(world.label))] + ([legend([], marks)] if marks else [])
     return sheet([plan.picture(), *keys], columns=1, margin=4)
 

@@ -15,7 +15,8 @@ def add_arguments(parser):
     parser.add_argument("labels", help="image of one class index a pixel, 0..9 in the order "
                                        f"{', '.join(CLASSES)}")
     parser.add_argument("--ade20k", action="store_true", help="the indices are ADE20K's 0..150, 0 for no label")
-    parser.add_argument("--out", help="picture to write (LABELS-graph.png beside the image)")
+    parser.add_argument("--out", help="picture to write, scaled to 512 x 512 as the boxes "
+                                      "are (LABELS-graph.png beside the image)")
 
 
 def run(args):

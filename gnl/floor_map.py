@@ -179,11 +179,13 @@ class Map(Canvas):
 
     def _things(self):
         w = self.world
+        hangs = w.z[:, 0] >= ROBOT_HEIGHT_M
+        pale = hangs | (w.z[:, 1] <= STEP_M)
+        self.any_pale = (pale & (w.label != WALL)).any()
         for i in np.argsort(w.z[:, 1], kind="stable"):  # from above one sees the highest
             if w.label[i] != WALL:
-                flat, hangs = w.z[i, 1] <= STEP_M, w.z[i, 0] >= ROBOT_HEIGHT_M
-                self.polygon(self._outline(i), colour_of(w.label[i], 70 if flat or hangs else 255),
-                             colour_of(w.label[i]) if hangs else (*INK, 90))
+                self.polygon(self._outline(i), colour_of(w.label[i], 70 if pale[i] else 255),
+                             colour_of(w.label[i]) if hangs[i] else (*INK, 90))
         walls = np.flatnonzero((w.label == WALL) & (w.z[:, 0] <= 0))  # and not the wall above a door
         for colour, less_px in ((QUIET, 0), (colour_of(WALL), 1)):  # all rims first: they end where walls meet
             for i in walls:

@@ -133,6 +133,13 @@ def test_a_home_names_the_classes_in_it_and_the_starts(world, grid, legends):
     assert count(disc, floor_map.PAPER) > 20
 
 
+@pytest.mark.parametrize(("z0", "height", "pale"), [(0.0, 0.7, False), (0.0, 0.04, True), (2.0, 0.3, True)])
+def test_a_home_says_what_pale_things_are_if_there_are_any(world, legends, z0, height, pale):
+    thing = {"class": "lamp", "polygon": [[2, 2], [3, 2], [3, 3], [2, 3]], "z0": z0, "height": height}
+    draw.home(World({**world.plan, "objects": [thing]}), 400)
+    assert [marks for _, marks in legends] == [None] + [{"pale": "pale: hangs overhead or lies flat"}] * pale
+
+
 @pytest.mark.parametrize("mark", draw.MARKS)
 def test_every_mark_stays_clear_of_its_words(mark):
     picture = np.array(draw.legend([], {mark: "words"}))

@@ -85,8 +85,7 @@ def test_the_first_look_is_the_same_for_all_methods(reference):
         assert len(first) == 1
 
 
-@pytest.mark.parametrize("stages", [("data/home-801*", "learned/net*", "learned/gcn*", "cells/800*"),
-                                    ("costs/*", "cells/801*")])
+@pytest.mark.parametrize("stages", [("data/home-801*", "learned/net*", "learned/gcn*"), ("costs/*", "cells/801*")])
 def test_two_processes_give_the_same_bytes_however_often_they_are_killed(reference, prepared, tmp_path, stages):
     """From nothing killed as soon as a stage has left something, or early and late in the cells."""
     out = tmp_path / "nothing" if len(stages) > 2 else prepared
