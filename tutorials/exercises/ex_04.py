@@ -17,6 +17,32 @@ def gradient_error(f, x, dx, eps=1e-6):
     raise NotImplementedError("exercise 4.1")
 
 
+def linear_backward(dout, x, w):
+    """Exercise 4.2: gradients of x @ w + b: dout (N, F), x (N, C), w (C, F) -> dx (N, C), dw (C, F), db (F,)."""
+    raise NotImplementedError("exercise 4.2")
+
+
+def loss_gradient(scores, labels):
+    """Exercise 4.3: gradient of the mean cross-entropy by the scores: (n, K), labels (n,) -> (n, K)."""
+    raise NotImplementedError("exercise 4.3")
+
+
+def row_backward(dout, x, w):
+    """Exercise 4.4: dx (N,), dw (3,) of z[i] = sum over u of x[i + u - 1] w[u], zeros beyond x. Find the bug."""
+    N = len(x)
+    x_padded, dout_padded = np.pad(x, 1), np.pad(dout, 1)
+    dx, dw = np.zeros(N), np.zeros(3)
+    for u in range(3):
+        dx += dout_padded[u:u + N] * w[u]
+        dw[u] = (x_padded[u:u + N] * dout).sum()
+    return dx, dw
+
+
+def predict():
+    """Exercise 4.5: (pixels that one output pixel depends on, numbers that one convolution 16 -> 16 learns)."""
+    raise NotImplementedError("exercise 4.5")
+
+
 def grade_4_1(gradient_error):
     x = np.array([[1., 2, 3], [-1, 0.5, -2]])
     kept, right = x.copy(), 3 * x ** 2
@@ -32,25 +58,15 @@ def grade_4_1(gradient_error):
     expect("a nudge of 1: 3 x^2 + 1", gradient_error(lambda: (x ** 3).sum(), x, right + 1, eps=1.0), 0, 1e-9)
 
 
-def linear_backward(dout, x, w):
-    """Exercise 4.2: gradients of x @ w + b: dout (N, F), x (N, C), w (C, F) -> dx (N, C), dw (C, F), db (F,)."""
-    raise NotImplementedError("exercise 4.2")
-
-
 def grade_4_2(linear_backward):
     rng = np.random.default_rng(0)
     x, w, b, dout = (rng.standard_normal(shape) for shape in ((5, 4), (4, 3), 3, (5, 3)))
     grads = linear_backward(dout.copy(), x.copy(), w.copy())
     expect("number of gradients", len(grads), 3)
     for name, array, grad in zip(("dx", "dw", "db"), (x, w, b), grads, strict=True):
-        expect(f"shape of {name}", np.shape(grad), array.shape)
+        expect(f"shape of {name}", str(np.shape(grad)), str(array.shape))
         error = nn.gradient_error(lambda: ((x @ w + b) * dout).sum(), array, np.asarray(grad), rng)
         expect(f"{name}: relative error against central differences", error, 0, 1e-5)
-
-
-def loss_gradient(scores, labels):
-    """Exercise 4.3: gradient of the mean cross-entropy by the scores: (n, K), labels (n,) -> (n, K)."""
-    raise NotImplementedError("exercise 4.3")
 
 
 def grade_4_3(loss_gradient):
@@ -59,17 +75,6 @@ def grade_4_3(loss_gradient):
     scores, labels = rng.standard_normal((6, 5)), rng.integers(5, size=6)
     expect("six rows", loss_gradient(scores.copy(), labels), nn.softmax_cross_entropy(scores, labels)[1])
     expect("a score of 1000", loss_gradient(np.array([[1000., 0]]), np.array([0])), [[0, 0]])
-
-
-def row_backward(dout, x, w):
-    """Exercise 4.4: dx (N,), dw (3,) of z[i] = sum over u of x[i + u - 1] w[u], zeros beyond x. Find the bug."""
-    N = len(x)
-    x_padded, dout_padded = np.pad(x, 1), np.pad(dout, 1)
-    dx, dw = np.zeros(N), np.zeros(3)
-    for u in range(3):
-        dx += dout_padded[u:u + N] * w[u]
-        dw[u] = (x_padded[u:u + N] * dout).sum()
-    return dx, dw
 
 
 def grade_4_4(row_backward):
@@ -83,11 +88,6 @@ def grade_4_4(row_backward):
     expect("shape of dx", np.shape(dx), (6,))
     expect("dw: relative error against central differences", nn.gradient_error(loss, w, dw, rng), 0, 1e-5)
     expect("dx: relative error against central differences", nn.gradient_error(loss, x, dx, rng), 0, 1e-5)
-
-
-def predict():
-    """Exercise 4.5: (pixels that one output pixel depends on, numbers that one convolution 16 -> 16 learns)."""
-    raise NotImplementedError("exercise 4.5")
 
 
 def grade_4_5(predict):

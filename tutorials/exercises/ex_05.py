@@ -9,16 +9,33 @@ def predict():
     raise NotImplementedError("exercise 5.1")
 
 
+def word(label, x0, y0, x1, y1):
+    """Exercise 5.2: the word (int) of a box of class `label`, half-open, whole px of the 512 x 512 view."""
+    raise NotImplementedError("exercise 5.2")
+
+
+def smallest_region(height, width):
+    """Exercise 5.3: how many pixels (int) a region must have in an image of this size to be kept."""
+    raise NotImplementedError("exercise 5.3")
+
+
+def count_regions(labels):
+    """Exercise 5.4: number of connected regions of an image (H, W). Right for most images; find the bug."""
+    name = {}
+    for y, x in np.ndindex(labels.shape):
+        name[y, x] = (y, x)  # a new region, unless it goes on from the left or from above
+        if x > 0 and labels[y, x - 1] == labels[y, x]:
+            name[y, x] = name[y, x - 1]
+        if y > 0 and labels[y - 1, x] == labels[y, x]:
+            name[y, x] = name[y - 1, x]
+    return len(set(name.values()))
+
+
 def grade_5_1(predict):
     words, n_edges = predict()
     expect("number of words", len(words), 4)
     expect("words", words, [22, 43, 94, 119])
     expect("edges", n_edges, 4)
-
-
-def word(label, x0, y0, x1, y1):
-    """Exercise 5.2: the word (int) of a box of class `label`, half-open, whole px of the 512 x 512 view."""
-    raise NotImplementedError("exercise 5.2")
 
 
 def grade_5_2(word):
@@ -32,28 +49,11 @@ def grade_5_2(word):
     expect("right and high, left and low", [word(0, 400, 0, 500, 100), word(0, 0, 400, 100, 500)], [2, 6])
 
 
-def smallest_region(height, width):
-    """Exercise 5.3: how many pixels (int) a region must have in an image of this size to be kept."""
-    raise NotImplementedError("exercise 5.3")
-
-
 def grade_5_3(smallest_region):
     expect("the view itself", smallest_region(512, 512), 5000)
     expect("64 x 64", smallest_region(64, 64), 79)
     expect("8 x 8", smallest_region(8, 8), 2)
     expect("one that is not square", smallest_region(480, 640), 5860)
-
-
-def count_regions(labels):
-    """Exercise 5.4: number of connected regions of an image (H, W). Right for most images; find the bug."""
-    name = {}
-    for y, x in np.ndindex(labels.shape):
-        name[y, x] = (y, x)  # a new region, unless it goes on from the left or from above
-        if x > 0 and labels[y, x - 1] == labels[y, x]:
-            name[y, x] = name[y, x - 1]
-        if y > 0 and labels[y - 1, x] == labels[y, x]:
-            name[y, x] = name[y - 1, x]
-    return len(set(name.values()))
 
 
 def grade_5_4(count_regions):

@@ -11,14 +11,31 @@ def predict():
     raise NotImplementedError("exercise 6.1")
 
 
-def grade_6_1(predict):
-    r = 1 / np.sqrt(8)
-    expect("A_hat", predict(), [[1 / 4, r, r, r], [r, 1 / 2, 0, 0], [r, 0, 1 / 2, 0], [r, 0, 0, 1 / 2]], 1e-3)
-
-
 def normalise(edges, n_nodes):
     """Exercise 6.2: A_hat = D^-1/2 (A + I) D^-1/2 as a full array: edges (E, 2), each pair once -> (N, N)."""
     raise NotImplementedError("exercise 6.2")
+
+
+def backward(dout, H, A, W):
+    """Exercise 6.3: gradients of A @ H @ W + b for any square A: dout (N, G) -> dH (N, F), dW (F, G), db (G,)."""
+    raise NotImplementedError("exercise 6.3")
+
+
+def lookup_backward(dout, words, n_words):
+    """Exercise 6.4: gradient by W1 from dout (N, F), that by W1[words]: words (N,) -> (n_words, F)."""
+    raise NotImplementedError("exercise 6.4")
+
+
+def mean_readout(H, starts):
+    """Exercise 6.5: mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F). Find the bug."""
+    count = np.diff(starts)
+    inner = starts[:-1].clip(0, len(H) - 1)
+    return np.add.reduceat(H, inner) / count.clip(1)[:, None]
+
+
+def grade_6_1(predict):
+    r = 1 / np.sqrt(8)
+    expect("A_hat", predict(), [[1 / 4, r, r, r], [r, 1 / 2, 0, 0], [r, 0, 1 / 2, 0], [r, 0, 0, 1 / 2]], 1e-3)
 
 
 def grade_6_2(normalise):
@@ -30,25 +47,15 @@ def grade_6_2(normalise):
     expect("its argument is left as it was", chain, [[0, 1], [1, 2]])
 
 
-def backward(dout, H, A, W):
-    """Exercise 6.3: gradients of A @ H @ W + b for any square A: dout (N, G) -> dH (N, F), dW (F, G), db (G,)."""
-    raise NotImplementedError("exercise 6.3")
-
-
 def grade_6_3(backward):
     rng = np.random.default_rng(0)
     A, H, W, b, dout = (rng.standard_normal(shape) for shape in ((6, 6), (6, 4), (4, 3), 3, (6, 3)))
     grads = backward(dout, H.copy(), A.copy(), W.copy())
     expect("number of gradients", len(grads), 3)
     for name, x, dx in zip(("dH", "dW", "db"), (H, W, b), grads, strict=True):
-        expect(f"shape of {name}", np.shape(dx), x.shape)
+        expect(f"shape of {name}", str(np.shape(dx)), str(x.shape))
         error = gradient_error(lambda: ((A @ H @ W + b) * dout).sum(), x, np.asarray(dx), rng, 60)
         expect(f"{name}: relative error against central differences", error, 0, 1e-5)
-
-
-def lookup_backward(dout, words, n_words):
-    """Exercise 6.4: gradient by W1 from dout (N, F), that by W1[words]: words (N,) -> (n_words, F)."""
-    raise NotImplementedError("exercise 6.4")
 
 
 def grade_6_4(lookup_backward):
@@ -56,13 +63,6 @@ def grade_6_4(lookup_backward):
     expect("words that differ", lookup_backward(dout, np.array([2, 0, 3]), 5), [[3, 4], [0, 0], [1, 2], [5, 6], [0, 0]])
     expect("a word that occurs twice", lookup_backward(dout, np.array([1, 0, 1]), 3), [[3, 4], [6, 8], [0, 0]])
     expect("no nodes", lookup_backward(dout[:0], np.zeros(0, int), 2), np.zeros((2, 2)))
-
-
-def mean_readout(H, starts):
-    """Exercise 6.5: mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F). Find the bug."""
-    count = np.diff(starts)
-    inner = starts[:-1].clip(0, len(H) - 1)
-    return np.add.reduceat(H, inner) / count.clip(1)[:, None]
 
 
 def grade_6_5(mean_readout):
