@@ -77,7 +77,7 @@ def sections(results, costs, settings):
     yield (f"{len(results)} cells, {settings['episodes']} training episodes and {settings['tests']} tests each; "
            f"{n_tests} test episodes of every method. All numbers are percent or percentage points of right answers "
            "(place: x, y and bearing) after the fifth look. Intervals are 95 %, from a bootstrap of whole cells"
-           + (": of so few cells they say little." if len(results) < FEW_CELLS else "."))
+           + (": of so few cells they say nothing." if len(results) < FEW_CELLS else "."))
     yield "## Means\n\n" + means(results, methods)
     yield "## Differences in pairs\n\n" + differences(results, methods)
     yield "![Ours - MV by gap](gaps.png)"
@@ -161,7 +161,8 @@ def differences(results, methods):
         every = [np.concatenate([right(result)[name] for result in results]) for name in (a, b)]
         rows.append([f"{a} - {b}", *interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
                      *(" ".join(interval(of_world)) for of_world in d.values())])
-    return markdown(["", "points", "interval", "McNemar p", *(f"world {world}" for world in worlds)], rows)
+    return ("McNemar's p takes the episodes of a cell as independent, and is too small.\n\n"
+            + markdown(["", "points", "interval", "McNemar p", *(f"world {world}" for world in worlds)], rows))
 
 
 def papers_differences():
@@ -181,7 +182,7 @@ def power(results, methods):
         rows.append([f"{a} - {b}", *(f"{episodes_needed(points / 100, paired)} / {episodes_needed(points / 100, alone)}"
                                      for points in RESOLVED)])
     return ("To see a true difference in 80 % of all experiments at 95 %: episodes in pairs / episodes of each method "
-            "that are not paired.\n\n" + markdown(["", *(f"{points} points" for points in RESOLVED)], rows))
+            "that are not paired.\n\n" + markdown(["", *(f"{n} point{'s' * (n != 1)}" for n in RESOLVED)], rows))
 
 
 def locations(results, methods):
@@ -202,7 +203,7 @@ def adaptation(results):
     early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
     text = f"DA - Ours {' '.join(interval(gain))}"
     if early:
-        text += f"; where an early one was chosen ({len(early)} cells) {' '.join(interval(early))}"
+        text += f"; where one of the first five was chosen ({len(early)} cells) {' '.join(interval(early))}"
     text += ". The best of ten equal ones looks better than they are: part of what Oracle gains is luck"
     return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
 

@@ -183,7 +183,7 @@ def test_costs_are_those_of_all_views(written):
 
 
 def test_intervals_of_few_cells_are_told_to_say_little(written):
-    assert "from a bootstrap of whole cells: of so few cells they say little." in written
+    assert "from a bootstrap of whole cells: of so few cells they say nothing." in written
 
 
 def test_the_pictures_are_there_and_the_text_names_them(folder, written):

@@ -37,7 +37,7 @@ def test_the_report_is_what_the_cells_say(tmp_path):
         main(["report", "--out", str(RESULTS), "--to", str(tmp_path)])
     assert exit.value.code == 0
     assert (tmp_path / "report.md").read_text() == REPORT
-    assert "say little" not in REPORT
+    assert "say nothing" not in REPORT
     for path in tmp_path.glob("*.png"):
         drawn, kept = (np.array(Image.open(folder / path.name)).astype(int) for folder in (tmp_path, RESULTS))
         assert abs(drawn - kept).mean() < 1

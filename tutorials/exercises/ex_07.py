@@ -41,6 +41,7 @@ def grade_7_2(reciprocal):
     expect("another scale", reciprocal(np.exp(3 * scores)), [[1 / 3, 1, 1 / 2], [1 / 3, 1, 1 / 2]])
     drawn = rng.permuted(np.tile(np.arange(7.0), (3, 1)), axis=1)
     expect("a permutation in each row", reciprocal(drawn), 1 / (7 - drawn))
+    expect("many ties", reciprocal(np.arange(12)[None] % 2.0), 1 / np.array([[7, 1, 8, 2, 9, 3, 10, 4, 11, 5, 12, 6]]))
 
 
 def grade_7_3(ranks_of):

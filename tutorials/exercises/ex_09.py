@@ -26,7 +26,7 @@ def distance_to_box(query, low, high):
 
 
 def most_in_common(K):
-    """Exercise 9.5: greatest dot product of two permutations of 1, 1/2, ..., 1/K whose first places differ."""
+    """Exercise 9.5: greatest dot product of two permutations of 1, 1/2, ..., 1/K, their 1 at different places."""
     raise NotImplementedError("exercise 9.5")
 
 
@@ -50,6 +50,8 @@ def grade_9_3(q_of_neighbours):
     expect("exact revisit of entry 3", q_of_neighbours(states, values, np.array([0.0, 2]), 2), 4)
     expect("fewer than k", q_of_neighbours(states[:2], values[:2], np.array([1.0, 1]), 4), 5.5)
     expect("nothing stored", q_of_neighbours(states[:0], values[:0], np.array([1.0, 1]), 4), 0)
+    ties = np.where(np.arange(40) % 2, 1.0, -2.0)[:, None]
+    expect("ties go to the older pair", q_of_neighbours(ties, np.arange(40.0), np.zeros(1), 3), 3)
 
 
 def grade_9_4(distance_to_box):
