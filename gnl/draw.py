@@ -1,4 +1,4 @@
-"""Pictures: homes, views, strips, graphs, ranks and beliefs, with Pillow alone.
+"""Pictures: homes, views, strips, graphs and ranks, with Pillow alone.
 
 Every function returns a PIL.Image in RGB; lengths are in px of the finished picture. No stage of the algorithm needs
 a picture, so this module may use all of them.
@@ -40,7 +40,6 @@ MARKS = {  # what stands for what on a map and in a strip, drawn at a place of a
     "robot": lambda page, x, y: page.dial((x, y), 0.4, 7, ROBOT),
     "sight": lambda page, x, y: page.polygon([(x - 7, y), (x + 7, y - 7), (x + 7, y + 7)], (*ROBOT, 40), (*ROBOT, 160)),
     "particles": lambda page, x, y: [page.disc((x + dx, y + dy), 1.5, BELIEF) for dx, dy in ((-4, 2), (0, -3), (4, 3))],
-    "belief": lambda page, x, y: page.polygon([(x - 8, y + 1), (x + 6, y - 5), (x + 6, y + 5)], (*BELIEF, 200), BELIEF),
     "right": lambda page, x, y: page.box(x - 6, y - 6, x + 7, y + 7, None, RIGHT, 3),
     "wrong": lambda page, x, y: page.box(x - 6, y - 6, x + 7, y + 7, None, WRONG, 3),
     "hidden": lambda page, x, y: [page.line([(x - d, y + 6), (x + 6 - d, y - 6)], FAINT, 2) for d in (0, 4, 8)]}
@@ -58,20 +57,10 @@ def home(world, width_px=640, grid=None, starts=(), shown=None):
         plan.sight(shown)
         plan.robot(shown)
         marks |= {"robot": "the start of the other pictures", "sight": "what is seen from there"}
-    if plan.any_pale:
+    if plan.pale.any():
         marks["pale"] = "pale: hangs overhead or lies flat"
     keys = [legend(np.unique(world.label))] + ([legend([], marks)] if marks else [])
     return sheet([plan.picture(), *keys], columns=1, margin=4)
-
-
-def belief_on_map(world, grid, pooled, particles, pose, width_px=640):
-    """Where a filter thinks it is: belief in places (K,), particles (x, y, theta, weight), the true pose."""
-    plan = Map(world, width_px, grid=grid)
-    plan.particles(particles)
-    plan.belief(pooled)
-    plan.robot(pose)
-    marks = {"robot": "the robot", "particles": "particles", "belief": "a place, the darker the more belief is in it"}
-    return sheet([plan.picture(), legend([], marks)], columns=1, margin=4)
 
 
 def view(rgb, size_px=256):

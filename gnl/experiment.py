@@ -127,7 +127,8 @@ def curve(results):
     """Right answers of NNQL at each checkpoint, and of the other planners, by cell: {method: (C, checkpoints)}."""
     n = len(results[0]["checkpoints"])
     ours = [[right(result, checkpoint=i)["Ours"].mean() for i in range(n)] for result in results]
-    return {"Ours": np.array(ours)} | {name: np.array([[right(result)[name].mean()] * n for result in results])
+    last = [right(result) for result in results]
+    return {"Ours": np.array(ours)} | {name: np.array([[cell[name].mean()] * n for cell in last])
                                        for name in results[0]["tests"]}
 
 

@@ -149,6 +149,12 @@ class Map(Canvas):
         rim = middle[:2] + 0.46 * g.cell_m * _ahead(middle[2] + np.linspace(0, 2 * np.pi / g.n_bearings, 8))
         return self.at([middle[:2], *rim])
 
+    @property
+    def pale(self):
+        """Which boxes of the world are drawn pale, for they are not in the way: (N,) bool."""
+        w = self.world
+        return (w.label != WALL) & ((w.z[:, 0] >= ROBOT_HEIGHT_M) | (w.z[:, 1] <= STEP_M))
+
     def names(self):
         """The names of the rooms, once more where something may have covered them."""
         for middle, name in self.named:
@@ -178,10 +184,7 @@ class Map(Canvas):
                     self.text(middle, name(i), 12, QUIET, "mm")
 
     def _things(self):
-        w = self.world
-        hangs = w.z[:, 0] >= ROBOT_HEIGHT_M
-        pale = hangs | (w.z[:, 1] <= STEP_M)
-        self.any_pale = (pale & (w.label != WALL)).any()
+        w, hangs, pale = self.world, self.world.z[:, 0] >= ROBOT_HEIGHT_M, self.pale
         for i in np.argsort(w.z[:, 1], kind="stable"):  # from above one sees the highest
             if w.label[i] != WALL:
                 self.polygon(self._outline(i), colour_of(w.label[i], 70 if pale[i] else 255),
