@@ -6,6 +6,8 @@ are tested from the same starts with the same luck, so that they can be compared
     SV     the first view alone               MV     chance           Scan   the best fixed sequence of actions
     Ours   the paper's NNQL                   DA     Ours at the checkpoint that is best on a few validation episodes
     Oracle Ours at the checkpoint that is best on the tests themselves: that is cheating, and shows what DA could gain
+
+MV, Scan and Ours are tested once more, from some of the starts of training: what has Ours learned by heart?
 """
 
 import json
@@ -19,6 +21,7 @@ import numpy as np
 
 from . import episode, learned, planners
 from .options import Experience, Options
+from .outcomes import outcomes
 from .places import PlaceGrid
 from .robot import Robot
 
@@ -56,7 +59,7 @@ def run_cell(cell, senses, starts, settings=None):
     """
     began, senses = now(), replace(senses, seconds={}, views=0)
     robot, grid = Robot(senses.world), PlaceGrid(senses.world)
-    learning, racing, testing, validating = np.random.SeedSequence(cell.entropy).spawn(4)
+    learning, racing, testing, validating, rehearsing = np.random.SeedSequence(cell.entropy).spawn(5)
     training = starts["training"]
     lived = Experience()
     store = episode.train_nnql(senses, robot, grid, training, learning,
@@ -70,30 +73,16 @@ def run_cell(cell, senses, starts, settings=None):
     plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours+": planners.go_on(options)}
     tests = {name: test(plan, starts["tests"], testing) for name, plan in plans.items()}
     past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
+    known = training[np.linspace(0, len(training) - 1, len(starts["tests"])).astype(int)]
+    by_heart = {name: test(plan, known, rehearsing) for name, plan in
+                {"MV": plans["MV"], "Scan": plans["Scan"], "Ours": past[-1]}.items()}
     made_from = {"home": learned.digest(senses.world.plan), "gcn": learned.fingerprint(senses.gcn.params),
                  "net": senses.net and learned.fingerprint(senses.net)}
     result = {"name": cell.name, "cell": asdict(cell), "settings": settings, "made from": made_from,
-              "sequence": sequences[0].tolist(), "tests": tests,
+              "sequence": sequences[0].tolist(), "tests": tests, "from training starts": by_heart,
               "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
               "validation": [test(plan, starts["validation"], validating) for plan in past]}
     return result, costs(senses, began, sum(map(len, store.values)))
-
-
-def outcomes(grid, record):
-    """Right or wrong after each look, as strings of 1 and 0, a character an episode."""
-    where = grid.location_of(record.answers) == grid.location_of(record.places)
-    return {"place": strings(record.correct), "location": strings(where)}
-
-
-def strings(right):
-    """(n, T) bool -> T strings of n characters."""
-    return ["".join("01"[int(one)] for one in look) for look in right.T]
-
-
-def arrays(strings):
-    """The other way round: T strings -> (n, T) bool."""
-    characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T
-    return characters == ord("1")
 
 
 def now():
@@ -108,38 +97,6 @@ def costs(senses, began, n_pairs):
             "peak MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
             "versions": {"python": platform.python_version(), **{name: version(name) for name in
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}
-
-
-def right(result, what="place", checkpoint=-1):
-    """Right answers after the last look by method, (n,) bool each; of NNQL at one of its checkpoints.
-
-    what : "place", or "location" for the place without its bearing
-    """
-    first = {"SV": arrays(result["tests"]["MV"][what])[:, 0]}
-    tests = {name: arrays(outcome[what])[:, -1] for name, outcome in result["tests"].items()}
-    by_checkpoint = [arrays(outcome[what])[:, -1] for outcome in result["checkpoints"]]
-    best = latest_best([arrays(outcome["place"])[:, -1].mean() for outcome in result["checkpoints"]])
-    return {**first, **tests, "Ours": by_checkpoint[checkpoint], "DA": by_checkpoint[adapted(result)],
-            "Oracle": by_checkpoint[best]}
-
-
-def curve(results):
-    """Right answers of NNQL at each checkpoint, and of the other planners, by cell: {method: (C, checkpoints)}."""
-    n = len(results[0]["checkpoints"])
-    ours = [[right(result, checkpoint=i)["Ours"].mean() for i in range(n)] for result in results]
-    last = [right(result) for result in results]
-    return {"Ours": np.array(ours)} | {name: np.array([[cell[name].mean()] * n for cell in last])
-                                       for name in results[0]["tests"]}
-
-
-def adapted(result):
-    """Checkpoint that is best on the validation episodes: 0, 1, ..."""
-    return latest_best([arrays(outcome["place"])[:, -1].mean() for outcome in result["validation"]])
-
-
-def latest_best(values):
-    """Index of the greatest value, of equal ones the last."""
-    return len(values) - 1 - int(np.argmax(values[::-1]))
 
 
 def to_bytes(value):

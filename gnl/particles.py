@@ -15,6 +15,7 @@ N_PARTICLES = 5000
 N_START_PLACES = 3
 STD = 0.03, 0.03  # CHOICE: motion noise of the filter, m and rad; the paper names none
 FLOOR = 1e-3  # CHOICE: likelihood of a place that the classifier rules out
+SIDE_BY_SIDE = 8  # filters: one call of NumPy for all, and their particles stay near the processor
 
 
 class ParticleFilter:
@@ -34,8 +35,8 @@ class ParticleFilter:
         self.grid, self.rng, self.std = grid, rng, std
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
         # In k blocks, one a place: systematic resampling takes every n-th particle, and would alias with turns.
-        place = best.take(np.arange(M) * k // M, 1)
-        low = grid.corner_of(place).astype(np.float32)
+        block = np.arange(M) * k // M
+        low = grid.corner_of(best).astype(np.float32).take(block, 1)
         spread = rng.random((M, 3), np.float32) * np.float32([grid.cell_m, grid.cell_m, 2 * np.pi / grid.n_bearings])
         self.x, self.y, self.theta = (low[..., i] + spread[:, i] for i in range(3))
         self.weight = np.full((B, M), 1 / M, np.float32)
@@ -45,21 +46,22 @@ class ParticleFilter:
         """Move all particles as odometry says, (B, 2) forward [m] and turn [rad], and spread them by its noise."""
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
         noise *= np.float32([[self.std[0]], [self.std[0]], [self.std[1]]])
-        # One filter at a time, here and below: its particles stay near the processor.
-        for b, (forward, turn) in enumerate(np.asarray(odometry, np.float32)):
-            self.x[b] += forward * np.cos(self.theta[b]) + noise[0]
-            self.y[b] += forward * np.sin(self.theta[b]) + noise[1]
-            self.theta[b] += turn + noise[2]
+        for some in self._groups():
+            forward, turn = np.asarray(odometry, np.float32)[some].T[..., None]
+            self.x[some] += forward * np.cos(self.theta[some]) + noise[0]
+            self.y[some] += forward * np.sin(self.theta[some]) + noise[1]
+            self.theta[some] += turn + noise[2]
 
     def weigh(self, likelihood):
         """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them."""
         self.place = np.empty(self.x.shape, int)
+        for some in self._groups():
+            self.place[some] = self.grid.place_of_xyt(self.x[some], self.y[some], self.theta[some])
         for b, of_place in enumerate(np.asarray(likelihood, np.float32)):
-            self.place[b] = self.grid.place_of_xyt(self.x[b], self.y[b], self.theta[b])
-            weight = self.weight[b] * of_place[self.place[b]]
+            weight = self.weight[b] * of_place.take(self.place[b])
             total = weight.sum()
             if total > 0:  # a view that no particle can explain says nothing about which of them is right
-                self.weight[b] = weight / total
+                np.divide(weight, total, out=self.weight[b])
 
     def belief(self, n_places, pooling="sum"):
         """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max")."""
@@ -82,10 +84,14 @@ class ParticleFilter:
         B, M = self.weight.shape
         start = self.rng.random(B)
         for b in range(B):
-            total = self.weight[b].astype(float).cumsum()
+            total = self.weight[b].cumsum(dtype=float)
             mark = np.ceil(total * (M / total[-1]) - start[b]).astype(int)  # copies of particles up to this one
             mark[-1] = M  # rounding must not lose the last one
             drawn = np.bincount(mark)[:M].cumsum()  # copy j is of the particle before which lie all marks up to j
             for of_particle in (self.x, self.y, self.theta, self.place):
                 of_particle[b] = of_particle[b].take(drawn)
         self.weight = np.full((B, M), 1 / M, np.float32)
+
+    def _groups(self):
+        """Slices of the filters."""
+        return [slice(b, b + SIDE_BY_SIDE) for b in range(0, len(self.weight), SIDE_BY_SIDE)]

@@ -7,8 +7,9 @@ import numpy as np
 
 from . import draw, draw_charts
 from .compare import episodes_needed, mcnemar, over_cells
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, adapted, curve, latest_best, right
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS
 from .files import load_json, write_whole
+from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
 from .terminal import Stage
 
@@ -17,6 +18,7 @@ PAIRS = ("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "
     ("Ours+", "Scan"), ("Ours+", "Ours"), ("Oracle", "Ours")
 RESOLVED = 10, 5, 2.5, 1  # points, to be told apart
 FEW_CELLS = 10
+T_XY = "t_xy_m", "T_xy {} m"
 
 
 def add_arguments(parser):
@@ -61,6 +63,7 @@ def load_cell(path):
     result, costs = load_json(path, what), load_json(path.parents[1] / "costs" / path.name, what)
     try:
         curve([result])
+        from_training(result)
         cost([costs])
         if len(result["checkpoints"]) != N_CHECKPOINTS:
             raise ValueError(f"{len(result['checkpoints'])} checkpoints")
@@ -84,6 +87,7 @@ def sections(results, costs, settings):
     yield "## The paper's own cells\n\n" + papers_differences()
     yield "## How many episodes it takes\n\n" + power(results, methods)
     yield "## The location alone\n\n" + locations(results, methods)
+    yield "## What Ours knows by heart\n\n" + by_heart(results)
     yield "## Which checkpoint adaptation chose\n\n" + adaptation(results)
     yield "![Learning curves](curves.png)\n\n![Chosen checkpoints](chosen.png)"
     yield "## What it costs\n\n" + cost(costs)
@@ -106,30 +110,10 @@ def interval(differences):
     return f"{mean:+.1f}", f"[{low:+.1f}, {high:+.1f}]"
 
 
-def by_world(results):
-    """The results of each world."""
-    return {world: [result for result in results if result["cell"]["world"] == world]
-            for world in sorted({result["cell"]["world"] for result in results})}
-
-
-def by_gap(results, a, b):
-    """Mean difference of two methods in points: {world: {(T_xy, T_theta): points}}."""
-    found = {}
-    for result in results:
-        cell, last = result["cell"], right(result)
-        of_gap = found.setdefault(cell["world"], {}).setdefault((cell["t_xy_m"], cell["t_theta_deg"]), [])
-        of_gap.append(100 * (last[a].mean() - last[b].mean()))
-    return {world: {gap: np.mean(points) for gap, points in gaps.items()} for world, gaps in found.items()}
-
-
 def means(results, methods):
     """Right answers by world, by T_xy and by T_theta, the paper's in brackets."""
     papers, rows = table_1(), []
-    groups = [("all", results)]
-    for key, words in (("world", "home {}"), ("t_xy_m", "T_xy {} m"), ("t_theta_deg", "T_theta {} deg")):
-        groups += [(words.format(value), [result for result in results if result["cell"][key] == value])
-                   for value in sorted({result["cell"][key] for result in results})]
-    for name, group in groups:
+    for name, group in groups(results, ("world", "home {}"), T_XY, ("t_theta_deg", "T_theta {} deg")):
         cells = [(r["cell"]["world"], r["cell"]["t_xy_m"], r["cell"]["t_theta_deg"]) for r in group]
         row = [name]
         for method in methods:
@@ -157,7 +141,7 @@ def differences(results, methods):
     worlds = by_world(results)
     rows = []
     for a, b in pairs_of(methods):
-        d = {world: [right(r)[a].mean() - right(r)[b].mean() for r in group] for world, group in worlds.items()}
+        d = {world: gains(group, a, b) for world, group in worlds.items()}
         every = [np.concatenate([right(result)[name] for result in results]) for name in (a, b)]
         rows.append([f"{a} - {b}", *interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
                      *(" ".join(interval(of_world)) for of_world in d.values())])
@@ -192,14 +176,23 @@ def locations(results, methods):
     return markdown(["", *methods], rows)
 
 
+def by_heart(results):
+    """Ours beside chance and the best fixed sequence, from the tests and from starts that it was trained on."""
+    pairs = [(other, of) for other in ("MV", "Scan") for of in (right, from_training)]
+    rows = [[name, *(" ".join(interval(gains(group, "Ours", other, of))) for other, of in pairs)]
+            for name, group in groups(results, T_XY)]
+    heads = [f"Ours - {other}, {'tests' if of is right else 'training starts'}" for other, of in pairs]
+    return ("From the tests, and from as many of the starts of its own training, with new luck.\n\n"
+            + markdown(["", *heads], rows))
+
+
 def adaptation(results):
     """How often each checkpoint was chosen, what that gained, and what a perfect choice would have."""
     chosen = np.array([adapted(result) for result in results])
-    best = [latest_best([right(result, checkpoint=i)["Ours"].mean() for i in range(len(result["checkpoints"]))])
-            for result in results]
+    best = [best_checkpoint(result["checkpoints"]) for result in results]
     rows = [["chosen", *np.bincount(chosen, minlength=len(results[0]["checkpoints"]))],
             ["best on the tests", *np.bincount(best, minlength=len(results[0]["checkpoints"]))]]
-    gain = [right(result)["DA"].mean() - right(result)["Ours"].mean() for result in results]
+    gain = gains(results, "DA", "Ours")
     early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
     text = f"DA - Ours {' '.join(interval(gain))}"
     if early:

@@ -13,6 +13,8 @@ make an edge.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
 
 from .classes import N_CLASSES
 
@@ -114,33 +116,19 @@ def regions(labels):
     left = np.repeat(np.arange(len(begin)), count)
     _, right = _spread(first, first + count)
     same = np.flatnonzero(label[left] == label[right])
-    region = _joined(left[same], right[same], len(begin))
+    n = len(begin)
+    ends = np.append(0, np.bincount(left[same], minlength=n).cumsum())
+    links = csr_matrix((np.ones(len(same)), right[same].astype(np.int32), ends.astype(np.int32)), (n, n))
+    region = connected_components(links, directed=False)[1]  # numbered in the order of their first runs
 
     # Region by region: it is faster to sort numbers whose last digits are the place than to ask for the order.
-    order = np.sort((region << 32) + np.arange(len(region)))
+    order = np.sort((region.astype(int) << 32) + np.arange(n))
     region, order = order >> 32, order & (1 << 32) - 1
     cut = np.flatnonzero(np.diff(region, prepend=-1))
     x, y0, y1 = (column % W)[order], y0[order], (y0 + end - begin)[order]
     low, high, total = ((lambda a, f=f: f.reduceat(a, cut)) for f in (np.minimum, np.maximum, np.add))
     boxes = np.stack([x[cut], low(y0), high(x) + 1, high(y1)], 1)
     return column[order[cut]] // W, label[order[cut]].astype(int), total(y1 - y0), boxes
-
-
-def _joined(left, right, n):
-    """Connected components of n nodes by links left < right: the number of each node's one, in order of first nodes.
-
-    Each node hangs on one that it is linked to, and all follow these chains to their roots, by strides that double.
-    The links not used so far, which are few, then link roots, and so again until all lie within one component.
-    """
-    root = np.arange(n)
-    while len(left):
-        root[right] = left  # of several the last
-        unused = np.flatnonzero(root.take(right) != left)
-        while not np.array_equal(root, farther := root.take(root)):
-            root = farther
-        ends = root.take([left[unused], right[unused]])
-        left, right = np.sort(ends[:, ends[0] != ends[1]], 0)
-    return (np.cumsum(root == np.arange(n)) - 1)[root]
 
 
 def word_of(label, boxes, size=(VIEW_PX, VIEW_PX)):

@@ -115,8 +115,9 @@ def forward(params, rgb, learning=True):
 def standardise(rgb, dtype=np.float32):
     """Colours less the view's mean over its spread, quad by quad: (B, H, H, 3) uint8 -> (B, H / 4, H / 4, 4, 12)."""
     B, H, W, _ = rgb.shape
-    quads = rgb.reshape(B, H // 4, 2, 2, W // 4, 2, 6).transpose(0, 1, 4, 2, 5, 3, 6)
-    flat = quads.astype(dtype, order="C").reshape(B, -1)
+    # Of each quad the two rows, each two pixels and so six numbers that lie side by side.
+    order = np.arange(H * W // 2).reshape(H // 4, 2, 2, W // 4, 2).transpose(0, 3, 1, 4, 2).ravel()
+    flat = rgb.reshape(B, -1, 6).take(order, 1).reshape(B, -1).astype(dtype)
     flat -= np.einsum("bi->b", flat)[:, None] / flat.shape[1]  # many times faster than `mean`
     spread = np.sqrt(np.einsum("bi,bi->b", flat, flat) / flat.shape[1])
     flat *= 1 / (spread[:, None] + 1)  # a view of one colour stays at zero
@@ -215,7 +216,9 @@ def to_quads(images):
 def from_quads(quads):
     """The way back: (4, B, h, w, 4) -> (B, 4 h, 4 w)."""
     _, B, h, w, _ = quads.shape
-    return quads.reshape(2, 2, B, h, w, 2, 2).transpose(2, 3, 5, 0, 4, 6, 1).reshape(B, 4 * h, 4 * w)
+    pairs = np.stack([quads[::2], quads[1::2]], -1)  # left and right pixel of each quad's upper, then lower row
+    fours = pairs.reshape(2, B, h, w, 2, 4).view(f"V{4 * quads.itemsize}")[..., 0]  # in a row of the image
+    return fours.transpose(1, 2, 4, 0, 3).copy().view(quads.dtype).reshape(B, 4 * h, 4 * w)
 
 
 def save(params, path, made_by):

@@ -1,33 +1,20 @@
-"""A cell: all methods from the same starts with the same luck, the checkpoint that is taken, outcomes as text."""
+"""A cell: all methods from the same starts with the same luck, and of what it is a function."""
 
 import itertools
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
-from gnl import episode, experiment, planners
+from gnl import episode, planners
 from gnl.episode import Senses
-from gnl.experiment import (
-    GAPS_DEG,
-    GAPS_M,
-    N_CHECKPOINTS,
-    Cell,
-    adapted,
-    arrays,
-    curve,
-    latest_best,
-    right,
-    run_cell,
-    strings,
-    to_bytes,
-)
+from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from gnl.gcn import GCN
 from gnl.learned import digest, fingerprint
+from gnl.outcomes import arrays, outcomes, right
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
 
@@ -88,19 +75,36 @@ def test_equal_actions_have_equal_outcomes_so_pairs_are_pairs(parts, lived):
     grid = PlaceGrid(senses.world)
     for name, plan in (("Scan", same_in_other_words), ("MV", planners.chance)):
         record = episode.run_all(senses, Robot(senses.world), grid, plan, starts["tests"], testing)
-        assert experiment.outcomes(grid, record) == result["tests"][name]
+        assert outcomes(grid, record) == result["tests"][name]
 
 
 def test_what_is_learned_never_comes_from_a_test_nor_a_choice_from_a_test_or_its_luck(parts, lived):
     starts, given = parts[1], lived[2]
     np.testing.assert_array_equal(given["train_nnql"][0][0], starts["training"])
     np.testing.assert_array_equal(given["race"][0][0], starts["training"])
-    tests, validation = given["run_all"][:3 + N_CHECKPOINTS], given["run_all"][3 + N_CHECKPOINTS:]
+    tests, known, past, validation = np.split(np.array(given["run_all"], object), [3, 6, 6 + N_CHECKPOINTS])
+    tests = [*tests, *past]
     assert all(np.array_equal(poses, starts["tests"]) for poses, _ in tests)
     assert all(np.array_equal(poses, starts["validation"]) for poses, _ in validation)
-    seeds = [{seed.spawn_key for _, seed in calls} for calls in (given["train_nnql"], given["race"], tests, validation)]
-    assert [len(of) for of in seeds] == [1, 1, 1, 1]  # all tests have the same luck
-    assert len(set.union(*seeds)) == 4
+    luck = [{seed.spawn_key for _, seed in calls}
+            for calls in (given["train_nnql"], given["race"], tests, known, validation)]
+    assert [len(of) for of in luck] == [1, 1, 1, 1, 1]  # all tests have the same luck
+    assert len(set.union(*luck)) == 5
+
+
+def test_what_was_learned_by_heart_is_asked_from_starts_of_training_with_luck_of_its_own(parts, lived):
+    """Ours is then the checkpoint of all that was learned."""
+    (senses, starts), (result, _, given, found) = parts, lived
+    grid, (store,) = PlaceGrid(senses.world), found["train_nnql"]
+    (known, seed), = {(poses.tobytes(), seed.spawn_key): (poses, seed) for poses, seed in given["run_all"]
+                      if not any(np.array_equal(poses, starts[name]) for name in ("tests", "validation"))}.values()
+    assert len(known) == N_TESTS
+    assert {pose.tobytes() for pose in known} <= {pose.tobytes() for pose in starts["training"]}
+    assert len({pose.tobytes() for pose in known}) == N_TESTS
+    plans = {"MV": planners.chance, "Scan": planners.scan(result["sequence"]), "Ours": planners.greedy(store)}
+    again = {name: outcomes(grid, episode.run_all(senses, Robot(senses.world), grid, plan, known, seed))
+             for name, plan in plans.items()}
+    assert result["from training starts"] == again
 
 
 def test_scan_is_the_winner_of_the_race_and_ours_plus_goes_on_with_one_action(lived):
@@ -126,7 +130,7 @@ def test_ten_checkpoints_are_tested_from_the_first_to_that_of_all_that_was_learn
     grid = PlaceGrid(senses.world)
     for kind, name, seed in (("tests", "checkpoints", given["run_all"][0][1]),
                              ("validation", "validation", given["run_all"][-1][1])):
-        again = [experiment.outcomes(grid, episode.run_all(senses, Robot(senses.world), grid,
+        again = [outcomes(grid, episode.run_all(senses, Robot(senses.world), grid,
                                                            planners.greedy(store.at(i)), starts[kind], seed))
                  for i in (0, N_CHECKPOINTS - 1)]
         assert [result[name][0], result[name][-1]] == again
@@ -149,60 +153,6 @@ def test_outcomes_say_what_they_were_made_from(parts, lived):
     assert result["settings"] == {"tests": N_TESTS}
     home, gcn = digest(senses.world.plan), fingerprint(senses.gcn.params)
     assert result["made from"] == {"home": home, "gcn": gcn, "net": None}
-
-
-def test_a_right_place_with_a_wrong_bearing_is_a_right_location():
-    grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
-    answers, places = np.array([[5, 5], [5, 17], [5, 6]]), np.array([[5, 6], [17, 17], [5, 18]])
-    record = SimpleNamespace(answers=answers, places=places, correct=answers == places)
-    assert experiment.outcomes(grid, record) == {"place": ["101", "010"], "location": ["101", "110"]}
-
-
-def test_strings_and_arrays_are_each_others_inverse():
-    rng = np.random.default_rng(0)
-    there = rng.random((7, 5)) < 0.5
-    assert strings(there)[2] == "".join("1" if one else "0" for one in there[:, 2])
-    np.testing.assert_array_equal(arrays(strings(there)), there)
-
-
-@pytest.mark.parametrize(("values", "best"), [([1, 3, 2], 1), ([3, 1, 3], 2), ([2, 2, 2], 2), ([5], 0)])
-def test_of_equal_checkpoints_the_latest_is_taken(values, best):
-    assert latest_best(values) == best
-    assert latest_best(np.array(values)) == best
-
-
-def made_up(checkpoints, validation):
-    """A result of 4 tests and 2 looks: answers after the last look of each checkpoint, on tests and validation."""
-    def of(first, last):
-        return {"place": [first, last], "location": [last, first]}
-
-    return {"cell": {"world": 800}, "tests": {"MV": of("0110", "0011"), "Scan": of("0110", "1111")},
-            "checkpoints": [of("0110", last) for last in checkpoints],
-            "validation": [of("1110" if i == 0 else "0000", last) for i, last in enumerate(validation)]}
-
-
-def test_adaptation_looks_at_validation_alone_and_the_oracle_at_the_tests():
-    result = made_up(["0000", "1111", "0111", "0001"], ["0001", "0111", "0111", "0011"])
-    assert adapted(result) == 2
-    found = {name: values.mean() for name, values in right(result).items()}
-    assert found == {"SV": 0.5, "MV": 0.5, "Scan": 1.0, "Ours": 0.25, "DA": 0.75, "Oracle": 1.0}
-    assert right(result, checkpoint=0)["Ours"].mean() == 0.0
-
-
-def test_locations_are_those_of_the_checkpoints_that_the_places_chose():
-    result = made_up(["0000", "1111", "0111", "0001"], ["0001", "0111", "0111", "0011"])
-    for i, outcome in enumerate(result["checkpoints"]):
-        outcome["location"] = ["0000", "0001"[i:] + "1" * i]
-    result["tests"]["Scan"]["location"] = ["0000", "1000"]
-    found = {name: "".join("01"[int(x)] for x in values) for name, values in right(result, "location").items()}
-    assert found == {"SV": "0011", "MV": "0110", "Scan": "1000", "Ours": "1111", "DA": "0111", "Oracle": "0011"}
-
-
-def test_a_curve_has_a_row_a_cell_and_a_column_a_checkpoint():
-    of_cells = curve([made_up(["1111", "0000", "0001"], ["0001"] * 3), made_up(["0000", "0011", "1111"], ["0001"] * 3)])
-    assert of_cells["Ours"].tolist() == [[1.0, 0.0, 0.25], [0.0, 0.5, 1.0]]
-    assert of_cells["MV"].tolist() == [[0.5] * 3] * 2
-    assert of_cells["Scan"].tolist() == [[1.0] * 3] * 2
 
 
 def test_each_cell_has_numbers_and_a_name_of_its_own():

@@ -37,7 +37,9 @@ def folder(tmp_path_factory):
         tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.55), "Ours+": outcome(rng, 0.5)}
         result = {"cell": {"world": world, "t_xy_m": m, "t_theta_deg": deg, "seed": 0}, "sequence": [0] * 4,
                   "tests": tests, "checkpoints": [outcome(rng, 0.36 + 0.01 * i) for i in range(10)],
-                  "validation": [outcome(rng, 0.4) for _ in range(10)]}
+                  "validation": [outcome(rng, 0.4) for _ in range(10)],
+                  "from training starts": {name: outcome(rng, share) for name, share in
+                                           (("MV", 0.4), ("Scan", 0.5), ("Ours", 0.6))}}
         costs = {"seconds": 3600.0 * (1 + i % 2), "views": 500_000, "of stages": {"labels": 3600.0, "graph": 100.0 * i},
                  "machine": f"core {i % 2}", "peak MB": 123.0 - i, "versions": {"numpy": "2.0"}}
         for kind, value in (("cells", result), ("costs", costs)):

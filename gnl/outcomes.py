@@ -1,0 +1,100 @@
+"""What cells found, as their files hold it, and what can be asked of it: who was right, after which look, how often.
+
+An outcome is a dict {"place": looks, "location": looks}; looks are T strings, one character an episode, 1 where the
+answer was right. The result of a cell holds an outcome of each method and of each checkpoint (experiment.py).
+
+    n episodes of a cell   T looks each   C cells
+"""
+
+import numpy as np
+
+
+def outcomes(grid, record):
+    """Right or wrong after each look, as strings of 1 and 0, a character an episode."""
+    where = grid.location_of(record.answers) == grid.location_of(record.places)
+    return {"place": strings(record.correct), "location": strings(where)}
+
+
+def strings(right):
+    """(n, T) bool -> T strings of n characters."""
+    return ["".join("01"[int(one)] for one in look) for look in right.T]
+
+
+def arrays(strings):
+    """The other way round: T strings -> (n, T) bool."""
+    characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T
+    return characters == ord("1")
+
+
+def answers(outcome, what="place", look=-1):
+    """Whether the answers after one look were right, the last if no other is named: (n,) bool.
+
+    what : "place", or "location" for the place without its bearing
+    """
+    return arrays(outcome[what])[:, look]
+
+
+def right(result, what="place", checkpoint=-1):
+    """Right answers after the last look by method, (n,) bool each; of NNQL at one of its checkpoints."""
+    first = {"SV": answers(result["tests"]["MV"], what, look=0)}
+    tests = {name: answers(outcome, what) for name, outcome in result["tests"].items()}
+    past = result["checkpoints"]
+    return {**first, **tests, "Ours": answers(past[checkpoint], what),
+            "DA": answers(past[adapted(result)], what), "Oracle": answers(past[best_checkpoint(past)], what)}
+
+
+def from_training(result):
+    """Right answers after the last look from starts of training, of the methods that were tested there."""
+    return {name: answers(outcome) for name, outcome in result["from training starts"].items()}
+
+
+def gains(results, a, b, of=right):
+    """Share of right answers of method a less that of b, cell by cell: a list."""
+    by_method = [of(result) for result in results]
+    return [one[a].mean() - one[b].mean() for one in by_method]
+
+
+def curve(results):
+    """Right answers of NNQL at each checkpoint, and of the other planners, by cell: {method: (C, checkpoints)}."""
+    n = len(results[0]["checkpoints"])
+    ours = [[answers(outcome).mean() for outcome in result["checkpoints"]] for result in results]
+    others = {name: [[answers(result["tests"][name]).mean()] * n for result in results] for name in results[0]["tests"]}
+    return {name: np.array(shares) for name, shares in {"Ours": ours, **others}.items()}
+
+
+def adapted(result):
+    """Checkpoint that is best on the validation episodes: 0, 1, ..."""
+    return best_checkpoint(result["validation"])
+
+
+def best_checkpoint(past):
+    """The one with the most right answers, of equal ones the latest; an outcome of each."""
+    return latest_best([answers(outcome).mean() for outcome in past])
+
+
+def latest_best(values):
+    """Index of the greatest value, of equal ones the last."""
+    return len(values) - 1 - int(np.argmax(values[::-1]))
+
+
+def by_world(results):
+    """The results of each world."""
+    return {world: [result for result in results if result["cell"]["world"] == world]
+            for world in sorted({result["cell"]["world"] for result in results})}
+
+
+def by_gap(results, a, b):
+    """Mean gain in points: {world: {(T_xy, T_theta): points}}."""
+    found = {}
+    for result, gain in zip(results, gains(results, a, b), strict=True):
+        cell = result["cell"]
+        found.setdefault(cell["world"], {}).setdefault((cell["t_xy_m"], cell["t_theta_deg"]), []).append(100 * gain)
+    return {world: {gap: np.mean(points) for gap, points in gaps.items()} for world, gaps in found.items()}
+
+
+def groups(results, *keys):
+    """All results, and those of each value of each key: (words, results). A key comes with words for its values."""
+    yield "all", results
+    for key, words in keys:
+        for value in sorted({result["cell"][key] for result in results}):
+            yield words.format(value), [result for result in results if result["cell"][key] == value]
