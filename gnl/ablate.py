@@ -118,9 +118,12 @@ def effects(out, chosen):
         beside = TRUE_LABELS if choice.true_labels and choice is not TRUE_LABELS else OURS
         row = [choice.point, choice.other, beside.other]
         for method in ("MV", "Ours"):
-            d, low, high = (100 * value for value in paired_difference(right(choice, method), right(beside, method)))
-            share = 100 * right(choice, method).mean()
-            row.append(f"{share:.1f}" if choice is OURS else f"{d:+.1f} [{low:+.1f}, {high:+.1f}]")
+            here, there = right(choice, method), right(beside, method)
+            d, low, high = (100 * value for value in paired_difference(here, there))
+            if choice is OURS:
+                row.append(f"{100 * here.mean():.1f}")
+            else:
+                row.append("0" if np.array_equal(here, there) else f"{d:+.1f} [{low:+.1f}, {high:+.1f}]")
         rows.append(row)
     return rows
 

@@ -11,16 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .classes import CEILING, FLOOR, N_CLASSES
+from .classes import CEILING, FLOOR
 from .photo import photograph
 from .strip import FACES, FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
 
 HEIGHT_M = 1.25  # CHOICE: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
-RAYS_AT_ONCE = 4096  # as many as stay near the processor
+RAYS_AT_ONCE = 4096  # as many as stay near the processor; twice as many where no photograph needs the room
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
-CEILING_BIT, FLOOR_BIT, BOTH = MOST_SURFACES, MOST_SURFACES + 1, 63  # BOTH: the bits of ceiling and floor together
-MASKS = np.append(1 << np.arange(63), 1 << CEILING_BIT | 1 << FLOOR_BIT)
+NO_SURFACE = 63  # the last bit: the lowest that is on, or so it counts, where no surface is
 
 
 @dataclass(frozen=True)
@@ -38,11 +37,9 @@ class Surfaces:
     run_length: np.ndarray  # (R,) int, pixels
 
     def labels(self, world):
-        """Class and length of the runs, neighbours of one class made one: many short ones are slow to paint."""
+        """Class and length of the runs."""
         of_box = np.append(world.label, np.array([CEILING, FLOOR], np.uint8))
-        label = of_box[self.face // FACES].take(self.run_surface)
-        first = np.flatnonzero(np.diff(label, prepend=np.uint8(N_CLASSES)))
-        return label[first], np.add.reduceat(self.run_length, first)
+        return of_box[self.face // FACES].take(self.run_surface), self.run_length
 
 
 def render(world, poses, rng, size=SIZE_PX, noise=1.0):
@@ -63,7 +60,8 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0):
 def true_labels(world, poses, size=SIZE_PX):
     """True labels alone: poses (B, 3) -> (B, H, H) uint8."""
     poses = np.asarray(poses, float)
-    return _paint([look(world, poses[part], size).labels(world) for part in _chunks(len(poses), size)], size)
+    parts = _chunks(len(poses), size, 2 * RAYS_AT_ONCE)
+    return _paint([look(world, poses[part], size).labels(world) for part in parts], size)
 
 
 def _paint(runs, size):
@@ -84,65 +82,70 @@ def row_of(z, w, size):
 
 def _pile(world, strip, size):
     """Surfaces of each ray, near to far: (ray, face, w, first row, end row), those without a pixel left out."""
-    box, w = strip.box, strip.w_in
+    box, w = strip.face // FACES, strip.w_in
     low, high = world.z.T
     from_above, from_below = high < HEIGHT_M, low > HEIGHT_M
-    capped = np.flatnonzero((from_above | from_below)[box])  # crossings that show a top or an underside, too
-    w_front, w_back, capped_box = w[capped], strip.w_out(capped), box[capped]
+    level, flat = np.where(from_above, high, low), np.where(from_above, TOP, UNDERSIDE)
+    capped = np.flatnonzero((from_above | from_below).take(box))  # crossings that show a top or an underside, too
+    capped_box, w_front, w_back = box.take(capped), w.take(capped), strip.w_out(capped)
+    which = np.append(box, len(low) + capped_box)  # where the two heights of each surface stand in a list
+    ray = np.append(strip.ray, strip.ray.take(capped))
+    face = np.append(strip.face, capped_box * FACES + flat.take(capped_box))
 
     def row(z, w):  # the first pixel whose middle lies below
-        return (row_of(z, w, size) + 0.5).clip(0, size).astype(np.int32)
+        return (row_of(z.take(which), w, size) + 0.5).clip(0, size).astype(np.int32)
 
-    level = np.where(from_above, high, low)[capped_box]
-    front, back = row(level, w_front), row(level, w_back)
-    begin = np.append(row(high[box], w), np.minimum(front, back))
-    end = np.append(row(low[box], w), np.maximum(front, back))
-    ray = np.append(strip.ray, strip.ray[capped])
-    face = np.append(box * FACES + strip.side, capped_box * FACES + np.where(from_above, TOP, UNDERSIDE)[capped_box])
+    front, back = row(np.append(high, level), np.append(w, w_front)), row(np.append(low, level), np.append(w, w_back))
+    begin, end = np.minimum(front, back), np.maximum(front, back)
     # A top belongs right behind its front; but what stands on it comes between the two.
-    nearness = np.append(w, np.where(world.carries[capped_box], w_back, w_front))
+    nearness = np.append(w, np.where(world.carries.take(capped_box), w_back, w_front))
 
     # Sorting numbers of which the last digits are the place in the list is faster than asking for the order.
-    shown, bits = np.flatnonzero(end > begin), len(begin).bit_length()
-    far = ((1 - nearness[shown] * NEAREST_M) * 2 ** 30).astype(int)
-    number = np.sort(((ray[shown] << 31) + far << bits) + shown)
+    far, bits = ((1 - nearness * NEAREST_M) * 2 ** 30).astype(int), len(ray).bit_length()
+    number = ((ray << 31) + far << bits) + np.arange(len(ray))
+    number = np.sort(number.take(np.flatnonzero(end > begin)))
     shown = number & (1 << bits) - 1
-    return number >> 31 + bits, face[shown], np.append(w, np.zeros(len(capped)))[shown], begin[shown], end[shown]
+    w = np.append(w, np.zeros(len(capped)))
+    return number >> 31 + bits, face.take(shown), w.take(shown), begin.take(shown), end.take(shown)
 
 
 def _visible(pile, n_rays, size, n_boxes):
     """Runs of the nearest surface in each column, from piles sorted near to far.
 
     Each surface of a column owns one bit, the nearest the lowest. Its first row switches the bit on, its end row
-    off; between two such edges one sees the lowest bit that is on. The two highest are those of ceiling and floor:
-    they change places where a column begins and at half its height.
+    off; between two such edges one sees the lowest bit that is on. Where none is, one sees the ceiling in the upper
+    half of the column and the floor in the lower; edges of no surface part the columns, and halves that lie bare.
     """
     ray, face, w, begin, end = pile
-    S, H, column = len(ray), size, np.arange(n_rays)
+    S, H, half = len(ray), size, size // 2
     count = np.bincount(ray, minlength=n_rays)
-    first = np.cumsum(count) - count  # of each ray's surfaces
-    bit = np.arange(S) - first[ray]
+    last = np.cumsum(count) - 1  # of each ray's surfaces
+    first = last + 1 - count
+    bit = np.arange(S) - first.take(ray)
     if count.max(initial=0) > MOST_SURFACES:
         return _visible([a[bit < MOST_SURFACES] for a in pile], n_rays, size, n_boxes)
 
+    # Mostly the last surface of a column, a wall, covers the row where ceiling and floor would meet.
+    bare = (count == 0) | (np.append(begin, 0).take(last) > half) | (np.append(end, 0).take(last) < half)
     # An edge is a number: its last six digits are the bit, the others the pixel. Short numbers are sorted faster.
     short = np.int32 if n_rays * H < 1 << 25 else np.int64
-    start, top = ((ray * H << 6) + bit).astype(short), ((column * H << 6) + BOTH).astype(short)
-    edge = np.sort(np.concatenate([start + (begin << 6), start + (end << 6), top, top + (H // 2 << 6)]))
-    on = np.bitwise_xor.accumulate(MASKS.take(edge & 63)) ^ 1 << FLOOR_BIT
+    start, top = ((ray * H << 6) + bit).astype(short), ((np.arange(n_rays + 1) * H << 6) + NO_SURFACE).astype(short)
+    edge = np.sort(np.concatenate([start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)]))
+    on = np.bitwise_xor.accumulate(np.uint64(1) << (edge & 63).astype(np.uint64))
     pixel = edge >> 6
-    length = np.append(pixel[1:], n_rays * H) - pixel
-    run = np.flatnonzero(length != 0)
-    on, run_ray = on[run], pixel[run] // H
+    run = np.flatnonzero(pixel[1:] != pixel[:-1])
+    on, begin = on.take(run), pixel.take(np.append(run, -1))
+    begin, length = begin[:-1], begin[1:] - begin[:-1]
+    run_ray = begin // H
     lowest = np.bitwise_count(on ^ on - 1) - 1  # the digits up to the lowest that is on, less that one
     surface = first.take(run_ray) + lowest
-    back = np.flatnonzero(lowest >= CEILING_BIT)
-    surface[back] = S + (lowest[back] == FLOOR_BIT)
+    back = np.flatnonzero(lowest == NO_SURFACE)
+    surface[back] = S + (begin[back] - run_ray[back] * H >= half)
     ceiling, floor = n_boxes * FACES + UNDERSIDE, (n_boxes + 1) * FACES + TOP
-    return Surfaces(np.append(face, [ceiling, floor]), np.append(w, [0, 0]), surface, run_ray, length[run])
+    return Surfaces(np.append(face, [ceiling, floor]), np.append(w, [0, 0]), surface, run_ray, length)
 
 
-def _chunks(n_views, size):
+def _chunks(n_views, size, n_rays=RAYS_AT_ONCE):
     """Slices of the views, as many in each as stay near the processor; one even of no views."""
-    step = max(1, RAYS_AT_ONCE // size)
+    step = max(1, n_rays // size)
     return [slice(i, min(i + step, n_views)) for i in range(0, max(1, n_views), step)]

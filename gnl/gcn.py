@@ -34,9 +34,9 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)
     degree = np.bincount(rows, minlength=n_nodes)
     scale = (1 / np.sqrt(degree)).astype(dtype)
-    ends = np.append(0, np.cumsum(degree))
-    columns, ends = columns.astype(np.int32), ends.astype(np.int32)  # scipy would look through them all to do it
-    return csr_matrix((scale[rows] * scale[columns], columns, ends), (n_nodes, n_nodes))
+    ends = np.zeros(n_nodes + 1, np.int32)  # of int64, scipy would look through them all to make them int32
+    np.cumsum(degree, out=ends[1:])
+    return csr_matrix((scale[rows] * scale[columns], columns.astype(np.int32), ends), (n_nodes, n_nodes))
 
 
 def graph_convolution_forward(node_features, adjacency, weight, bias):
@@ -46,7 +46,9 @@ def graph_convolution_forward(node_features, adjacency, weight, bias):
     """
     H, A, W = node_features, adjacency, weight
     AH = A @ H
-    return AH @ W + bias, (AH, A, W)
+    out = AH @ W
+    out += bias
+    return out, (AH, A, W)
 
 
 def graph_convolution_backward(dout, cache):
@@ -73,9 +75,10 @@ def mean_backward(dout, cache):
 def lookup_backward(dout, words, n_words):
     """X^T dout for one-hot X: each word gathers the gradients of its nodes, (N, F) -> (n_words, F)."""
     order = np.argsort(words, kind="stable")
-    present, first = np.unique(words[order], return_index=True)
+    count = np.bincount(words, minlength=n_words)
+    present = np.flatnonzero(count)
     dW = np.zeros((n_words, dout.shape[1]), dout.dtype)
-    dW[present] = np.add.reduceat(dout[order], first) if len(words) else 0
+    dW[present] = np.add.reduceat(dout.take(order, 0), (count.cumsum() - count)[present]) if len(words) else 0
     return dW
 
 
@@ -107,9 +110,11 @@ class GCN:
         p = self.params
         A = normalise_adjacency(graphs.edges, len(graphs.words), p["W1"].dtype)
         # The words are one-hot: X W1 picks rows, and A_hat (X W1) costs less than (A_hat X) W1.
-        H1, relu1 = relu_forward(A @ p["W1"][graphs.words] + p["b1"])
+        Z1 = A @ p["W1"].take(graphs.words, 0)
+        Z1 += p["b1"]
+        H1, relu1 = relu_forward(Z1, out=Z1)
         Z2, conv2 = graph_convolution_forward(H1, A, p["W2"], p["b2"])
-        H2, relu2 = relu_forward(Z2)
+        H2, relu2 = relu_forward(Z2, out=Z2)
         g, mean = mean_forward(H2, graphs.starts)
         scores, last = linear_forward(g, p["W3"], p["b3"])
         return scores, (graphs.words, A, relu1, conv2, relu2, mean, last)

@@ -159,12 +159,20 @@ def pack_answers(answers, k):
 
 def check_points(points, dim):
     """The points as float32 (n, dim), or a ValueError that says what is wrong with them."""
-    with np.errstate(over="ignore"):  # what is too great for float32 becomes inf, and is refused below
-        points = np.asarray(points, np.float32)
-    if points.ndim != 2 or points.shape[1] != dim:
-        raise ValueError(f"points: expected shape (n, {dim}), found {points.shape}")
+    points = as_points(points, dim)
     if not np.isfinite(points).all():
         raise ValueError(f"points: expected finite float32 values, found {points[~np.isfinite(points)][0]}")
+    return points
+
+
+def as_points(points, dim):
+    """The points as float32 (n, dim), or a ValueError; what is too great for float32 becomes inf."""
+    points = np.asarray(points)
+    if points.dtype != np.float32:
+        with np.errstate(over="ignore"):
+            points = points.astype(np.float32)
+    if points.ndim != 2 or points.shape[1] != dim:
+        raise ValueError(f"points: expected shape (n, {dim}), found {points.shape}")
     return points
 
 

@@ -15,7 +15,7 @@ N_PARTICLES = 5000
 N_START_PLACES = 3
 STD = 0.03, 0.03  # CHOICE: motion noise of the filter, m and rad; the paper names none
 FLOOR = 1e-3  # CHOICE: likelihood of a place that the classifier rules out
-SIDE_BY_SIDE = 8  # filters: one call of NumPy for all, and their particles stay near the processor
+AT_ONCE = 8  # filters: one call of NumPy for all, and their particles stay near the processor
 
 
 class ParticleFilter:
@@ -94,4 +94,4 @@ class ParticleFilter:
 
     def _groups(self):
         """Slices of the filters."""
-        return [slice(b, b + SIDE_BY_SIDE) for b in range(0, len(self.weight), SIDE_BY_SIDE)]
+        return [slice(b, b + AT_ONCE) for b in range(0, len(self.weight), AT_ONCE)]

@@ -19,7 +19,7 @@ from bisect import bisect_left
 
 import numpy as np
 
-from .kdtree import check_count, check_points, lengths
+from .kdtree import as_points, check_count, check_points, lengths
 
 # Any choice gives the same answers.
 SMALL = 4000  # rows; until there are more, all on the heap, it is fastest to look at every one
@@ -32,7 +32,7 @@ class RankIndex:
 
     def __init__(self, n_places):
         n_places = check_count("n_places", n_places, 1)
-        self._values = (1 / np.arange(1, n_places + 1)).astype(np.float32)  # of every vector, in some order
+        self._values = (1 / np.arange(n_places, 0, -1)).astype(np.float32)  # of every vector, sorted
         self._most_beyond = most_beyond(n_places).tolist()
         # Summed in any order, a float32 dot product of K positive terms is off by at most K * 2^-24 of itself, and it
         # is at most pi^2 / 6. Twice that, since two are compared, and twice again, for the bound is rounded too.
@@ -86,32 +86,34 @@ class RankIndex:
         if self._shelves[-1]:
             who, rows, unsure = self._look_on_shelves(queries, k, n_first)
         else:
-            who, rows, unsure = np.empty(0, int), np.empty(0, int), np.arange(len(queries))
-        if len(unsure):
+            who, rows, unsure = [], [], list(range(len(queries)))
+        if unsure:
             others, their_rows = self._look_at_all(queries[unsure], k, n_first)
-            who, rows = np.append(who, unsure[others]), np.append(rows, their_rows)
+            who, rows = who + [unsure[i] for i in others.tolist()], rows + their_rows.tolist()
         return self._settle(queries, who, rows, k, n_first)
 
     def _look_on_shelves(self, queries, k, n_first):
         """Pairs of a query and a row that may be among its k nearest; and the queries that need to see more."""
-        heap = slice(self._shelves[-1], bisect_left(self._oldest, n_first, self._shelves[-1]))
-        on_heap = products(queries, self._rows[heap])  # of all queries together: much faster than one by one
-        places = self._first_places(queries).tolist()
+        start, end = self._shelves[-1], bisect_left(self._oldest, n_first, self._shelves[-1])
+        on_heap = [()] * len(queries)
+        if start < end:
+            on_heap = products(queries, self._rows[start:end])  # of all together: much faster than one by one
         who, rows, unsure = [], [], []
-        for i, query in enumerate(zip(queries, places, on_heap, strict=True)):
-            near = self._look(k, self._pieces(*query, n_first))
+        for i, (query, dots) in enumerate(zip(queries, on_heap, strict=True)):
+            near = self._look(k, self._pieces(query, dots, n_first))
             if near is None:
                 unsure.append(i)
             else:
                 who += [i] * len(near)
-                rows += near.tolist()
-        return np.array(who, int), np.array(rows, int), np.array(unsure, int)
+                rows += near
+        return who, rows, unsure
 
-    def _pieces(self, query, places, on_heap, n_first):
+    def _pieces(self, query, on_heap, n_first):
         """Where a query (K,) looks: first row of a piece, its dot products, the most that any row beyond can have."""
         if len(on_heap):
             yield self._shelves[-1], on_heap, self._most_beyond[0]
-        for depth, place in enumerate(places, 1):
+        for depth in range(1, min(DEEP, len(query)) + 1):
+            place = (query == 1 / depth).argmax()
             start = self._shelves[place]
             end = bisect_left(self._oldest, n_first, start, self._shelves[place + 1])
             yield start, self._rows[start:end] @ query, self._most_beyond[depth]
@@ -126,7 +128,7 @@ class RankIndex:
             seen.append((start, dots))
             enough = best[0] - self._tolerance
             if enough > beyond:
-                return np.concatenate([start + (dots >= max(enough, 0)).nonzero()[0] for start, dots in seen])
+                return [start + i for start, dots in seen for i in (dots >= max(enough, 0)).nonzero()[0].tolist()]
         return None
 
     def _look_at_all(self, queries, k, n_first):
@@ -141,22 +143,23 @@ class RankIndex:
     def _settle(self, queries, who, rows, k, n_first):
         """Of the rows found for each query, and the copies of each, the k best points by exact distance."""
         distances, ids = np.full((len(queries), k), np.inf), np.full((len(queries), k), -1)
-        if not len(rows):
+        if not rows:
             return distances, ids
-        exact = lengths(self._rows[rows] - queries[who].astype(float))
-        points = [self._oldest[row] for row in rows.tolist()]
+        points = [self._oldest[row] for row in rows]
+        who, rows = np.array(who), np.array(rows)
+        exact = lengths(self._rows.take(rows, 0) - queries.take(who, 0).astype(float))
         if self._copies:
-            points = [self._copies.get(oldest, [oldest])[:k] for oldest in points]
+            points = [[i for i in self._copies.get(oldest, [oldest])[:k] if i < n_first] for oldest in points]
             copies = [len(equal) for equal in points]
             who, exact, points = who.repeat(copies), exact.repeat(copies), [i for equal in points for i in equal]
         points = np.array(points)
 
         order = np.lexsort((points, exact, who))  # query by query, the nearest first, the older of equals first
-        order = order[points[order] < n_first]
         who, exact, points = who[order], exact[order], points[order]
         column = np.arange(len(who)) - who.searchsorted(who)
         best = column < k
-        distances[who[best], column[best]], ids[who[best], column[best]] = exact[best], points[best]
+        where = who[best], column[best]
+        distances[where], ids[where] = exact[best], points[best]
         return distances, ids
 
     def _find(self, vector):
@@ -185,19 +188,14 @@ class RankIndex:
         self._row_of = order.argsort()[self._row_of].tolist()
         self._shelves = first[order].searchsorted(np.arange(len(self._shelves))).tolist()
 
-    def _first_places(self, queries):
-        """The first DEEP places of each query, best first: (B, DEEP)."""
-        depth = min(DEEP, len(self._values))
-        who, places = (queries >= self._values[depth - 1]).nonzero()
-        return places[np.lexsort((-queries[who, places], who))].reshape(-1, depth)
-
     def _check_ranks(self, points):
         """The points as float32 (n, K), or a ValueError if they are no reciprocal ranks."""
-        points = check_points(points, len(self._values))
-        wrong = (np.sort(points, axis=1)[:, ::-1] != self._values).any(axis=1)
+        points = as_points(points, len(self._values))
+        wrong = np.sort(points, axis=1) != self._values
         if wrong.any():
+            check_points(points, len(self._values))
             raise ValueError("points: expected reciprocal ranks, in each row a permutation of 1, 1/2, ..., "
-                             f"1/{len(self._values)} in float32, found {points[wrong][0]}")
+                             f"1/{len(self._values)} in float32, found {points[wrong.any(axis=1)][0]}")
         return points
 
 

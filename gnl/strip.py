@@ -33,20 +33,19 @@ class Strip:
     n_columns: int
     ray: np.ndarray  # (P,) int
     w_in: np.ndarray  # (P,) [1/m]
-    box: np.ndarray  # (P,) int
-    side: np.ndarray  # (P,) 0..3, the one by which the ray enters
+    face: np.ndarray  # (P,) int, box * FACES + the side 0..3 by which the ray enters
     seen: np.ndarray  # (P,) int, which of the boxes in view it is
     exits: np.ndarray  # (4, 2, V) lines (a, b) by one of which a ray leaves the box
+    slope: np.ndarray  # (B * C,) of each ray
 
     def w_out(self, chosen=slice(None)):
         """Inverse depth where the rays of chosen crossings leave their boxes; few users need all of it."""
-        s = slopes(self.n_columns)[self.ray[chosen] % self.n_columns]
-        return _greatest(self.exits, self.seen[chosen], s)
+        return _greatest(self.exits, self.seen[chosen], self.slope.take(self.ray[chosen]))
 
     def dense(self):
         """Near to far as arrays (B, C, D): distance in, distance out [m, along the ray], box; inf and -1 where none."""
         order = np.lexsort((-self.w_in, self.ray))
-        ray, box, w_in, w_out = (a[order] for a in (self.ray, self.box, self.w_in, self.w_out()))
+        ray, box, w_in, w_out = (a[order] for a in (self.ray, self.face // FACES, self.w_in, self.w_out()))
         d = np.arange(len(ray)) - np.searchsorted(ray, ray)  # how many the ray has crossed before
         shape = self.n_views * self.n_columns, int(d.max(initial=0)) + 1
         near, far, boxes = np.full(shape, np.inf), np.full(shape, np.inf), np.full(shape, -1)
@@ -65,80 +64,88 @@ def slopes(n_columns):
 def cast(world, poses, n_columns=512):
     """Semantic strip of each pose: poses (B, 3) -> Strip. Nothing behind the nearest full-height wall is kept."""
     B, C = len(poses), n_columns
-    view, box, *axes, near, far, away = _boxes_in_view(world, poses)
+    view, box, axes, near, far, away = _boxes_in_view(world, poses)
     V, outside = len(box), near > 0
-    begin, end = _columns_of_faces(*axes, near, far, C)
-    near_lines, far_lines = np.stack(axes) / near, np.stack(axes) / far  # (a, b) of both axes, (2, 2, V)
+    begin, end = _columns_of_faces(axes, near, far, C)
+    near_lines, far_lines = axes / near, axes / far  # (a, b) of both axes, (2, 2, V)
     exits = np.concatenate([far_lines, near_lines * ~outside], 1).transpose(1, 0, 2)
-    inside = ~outside.any(0)  # a box around the camera shows no face: its first stands in, where all is cut off
+    # A box around the camera shows no face: its first stands in, where all is cut off.
+    inside = ~(outside[0] | outside[1])
     near_lines[:, 0, inside] = [[1 / NEAREST_M], [0]]
 
     # Faces, each as k * V + box, that fill a column at least; those of full-height walls first.
-    face = np.flatnonzero(end > begin)
-    closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height))[box[face % V]]
-    face = np.concatenate([face[closes], face[~closes]])
-    a, b = near_lines.reshape(2, -1)[:, face]
-    seen, begin, count = face % V, begin.ravel()[face], (end - begin).ravel()[face]
+    closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height)).take(box)
+    walls, others = np.flatnonzero((end > begin) & closes), np.flatnonzero((end > begin) & ~closes)
+    face = np.append(walls, others)
+    a, b = near_lines[0].take(face), near_lines[1].take(face)
+    seen, begin, count = face - V * (face >= V), begin.take(face), (end - begin).take(face)
 
     # Each face becomes one crossing for each of its columns: all that is the face's is repeated, and the rays, which
     # for the face begin at view * C + begin, count on from crossing to crossing.
-    owner = np.repeat(np.arange(len(face)), count)
     first_crossing = np.cumsum(count) - count
-    ray = np.arange(len(owner)) + np.repeat(view[seen] * C + begin - first_crossing, count)
-    s = np.tile(slopes(C), B)[ray]
-    w_in = np.minimum(np.repeat(a, count) + np.repeat(b, count) * s, 1 / NEAREST_M)
-    near_by = np.flatnonzero(w_in == 1 / NEAREST_M)
-    gone = _greatest(exits, seen[owner[near_by]], s[near_by]) >= 1 / NEAREST_M  # cut off from front to back
-    w_in[near_by[gone]] = -1
+    ray = np.repeat(view.take(seen) * C + begin - first_crossing, count)
+    ray += np.arange(len(ray))
+    slope = np.tile(slopes(C), B)
+    w_in = slope.take(ray)
+    w_in *= np.repeat(b, count)
+    w_in += np.repeat(a, count)
+    owner = np.repeat(np.arange(len(face)), count)
+    near_by = np.flatnonzero(w_in >= 1 / NEAREST_M)
+    if len(near_by):
+        w_out = _greatest(exits, seen[owner[near_by]], slope[ray[near_by]])
+        w_in[near_by] = np.where(w_out < 1 / NEAREST_M, 1 / NEAREST_M, -1)  # -1: cut off from front to back
 
-    n_wall = count[:np.count_nonzero(closes)].sum()
+    n_wall = count[:len(walls)].sum()
     horizon = np.zeros(B * C)  # the nearest full-height wall on each ray
     np.maximum.at(horizon, ray[:n_wall], w_in[:n_wall])
-    kept = np.flatnonzero(w_in >= horizon[ray])
-    owner = owner[kept]
-    side = (np.array([[0], [1]]) + 2 * away).ravel()[face]  # axes turned away from the camera: their sides look at it
-    return Strip(B, C, ray[kept], w_in[kept], box[seen][owner], side[owner], seen[owner], exits)
+    kept = np.flatnonzero(w_in >= horizon.take(ray))
+    owner = owner.take(kept)
+    side = np.where(face < V, 0, 1) + 2 * away.take(face)  # axes turned away from the camera: their sides look at it
+    face = box.take(seen) * FACES + side
+    return Strip(B, C, ray.take(kept), w_in.take(kept), face.take(owner), seen.take(owner), exits, slope)
 
 
 def _boxes_in_view(world, poses):
     """Boxes of which some part may be in view, and their slabs as the camera sees them.
 
-    returns : view, box (V,);  (2, V) each: how far n_k points ahead and to the left; near_k, far_k [m]; whether n_k
-              is the box's own axis and not its opposite
+    returns : view, box (V,);  (2, 2, V): how far n_k points ahead and to the left;  (2, V) each: near_k, far_k [m];
+              whether n_k is the box's own axis and not its opposite
     """
     x, y, theta = (np.asarray(poses, float)[:, i, None] for i in range(3))
     dx, dy = world.centre[:, 0] - x, world.centre[:, 1] - y
     cos, sin, half = np.cos(theta), np.sin(theta), FIELD_OF_VIEW_RAD / 2
     ahead, left = cos * dx + sin * dy, cos * dy - sin * dx
     # A circle around the box reaches into the view.
-    view, box = np.nonzero(abs(left) * np.cos(half) - ahead * np.sin(half) < np.hypot(*world.half.T))
-    ahead, left, turn = ahead[view, box], left[view, box], world.angle[box] - theta[view, 0]
+    pair = np.flatnonzero(abs(left) * np.cos(half) - ahead * np.sin(half) < np.hypot(*world.half.T))
+    view, box = np.divmod(pair, len(world.label))
+    ahead, left, turn = ahead.take(pair), left.take(pair), world.angle.take(box) - theta.take(view)
     cos, sin = np.cos(turn), np.sin(turn)
-    middle = np.stack([cos * ahead + sin * left, cos * left - sin * ahead])
-    sign, half = np.copysign(1, middle), world.half.T[:, box]
-    near, far = abs(middle) - half, abs(middle) + half
+    middle = np.array([cos * ahead + sin * left, cos * left - sin * ahead])
+    sign, half = np.copysign(1, middle), np.array([side.take(box) for side in world.half.T])
+    middle = abs(middle)
+    near, far = middle - half, middle + half
     near[abs(near) < 1e-12] = -1e-12  # in the plane of a side one does not see it
-    return view, box, sign * [cos, -sin], sign * [sin, cos], near, far, sign > 0
+    return view, box, sign * np.array([[cos, -sin], [sin, cos]]), near, far, sign > 0
 
 
-def _columns_of_faces(ahead, left, near, far, n_columns):
+def _columns_of_faces(axes, near, far, n_columns):
     """First and end column of the faces k of each box, (2, V) each, of slabs as _boxes_in_view gives them.
 
     From face 0 to face 1 one passes three corners: where the outline begins, where the faces meet, where it ends.
     With one face alone two of the three are the same corner.
     """
-    C, outside = n_columns, near > 0
-    along_0 = np.stack([near[0], near[0], np.where(outside[1], far[0], near[0])])
-    along_1 = np.stack([np.where(outside[0], far[1], near[1]), near[1], near[1]])
+    C, outside, (ahead, left) = n_columns, near > 0, axes
+    along_0 = np.array([near[0], near[0], np.where(outside[1], far[0], near[0])])
+    along_1 = np.array([np.where(outside[0], far[1], near[1]), near[1], near[1]])
     x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
     with np.errstate(divide="ignore", invalid="ignore"):
         column = np.ceil((1 - y / x / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5)
     # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
     front = x > IN_FRONT_M
     first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
-    behind = np.stack([first, np.where(front[0], C - first, first), C - first])
+    behind = np.array([first, np.where(front[0], C - first, first), C - first])
     column = np.where(front, column, behind).clip(0, C).astype(int)
-    inside = ~outside.any(0)
+    inside = ~(outside[0] | outside[1])
     column[:, inside] = [[0], [C], [C]]
     shown = front[0] | front[2] | inside
     return np.minimum(column[:-1], column[1:]), np.maximum(column[:-1], column[1:]) * shown
@@ -146,7 +153,10 @@ def _columns_of_faces(ahead, left, near, far, n_columns):
 
 def _greatest(lines, seen, s):
     """Greatest a + b s, and 0 at least, of the lines (n, 2, V) of some boxes at slopes s."""
-    w = np.zeros(len(s))
+    greatest = np.zeros(len(s))
     for a, b in lines:
-        np.maximum(w, a[seen] + b[seen] * s, out=w)
-    return w
+        w = b.take(seen)
+        w *= s
+        w += a.take(seen)
+        np.maximum(greatest, w, out=greatest)
+    return greatest

@@ -170,6 +170,18 @@ def test_an_effect_is_the_difference_in_pairs_from_our_choice_and_with_true_labe
         assert ours[column] == f"{100 * right(OURS).mean():.1f}"
 
 
+def test_where_no_answer_changed_the_effect_is_nothing_without_an_interval(tmp_path):
+    write_outcomes(tmp_path, [OURS, NO_EDGES])
+    for cell in ablate.CELLS:
+        ours, other = (json.loads(path_of(tmp_path, ablate.name_of(choice, cell)).read_bytes())
+                       for choice in (OURS, NO_EDGES))
+        other["tests"]["MV"] = ours["tests"]["MV"]
+        path_of(tmp_path, ablate.name_of(NO_EDGES, cell)).write_bytes(to_bytes(other))
+    row = ablate.effects(tmp_path, [NO_EDGES])[0]
+    assert row[3] == "0"
+    assert row[4] != "0"
+
+
 def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_once(tmp_path, monkeypatch, capsys):
     asked, page = [], tmp_path / "page.md"
     page.write_text("| open | effect |\n| edges | ? |\n| neighbours | ? |\n")

@@ -8,7 +8,7 @@ from conftest import room, strewn_plan, thing
 
 from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, TV, WALL
 from gnl.free_space import box_distance
-from gnl.strip import NEAREST_M, cast, slopes
+from gnl.strip import FACES, NEAREST_M, cast, slopes
 from gnl.world import World
 
 
@@ -218,10 +218,10 @@ def test_rays_enter_by_the_side_that_faces_them():
         for off, sides in ((0.0, {k}), (0.7, {k, (k + 1) % 4})):  # in front of it, before the corner with the next
             x, y = 5 + 2 * np.cos(bearing + off), 5 + 2 * np.sin(bearing + off)
             strip = cast(world, np.array([[x, y, bearing + off + np.pi]]), 64)
-            bed = strip.box == 4
-            assert set(strip.side[bed].tolist()) == sides
+            bed, side = strip.face // FACES == 4, strip.face % FACES
+            assert set(side[bed].tolist()) == sides
             if off:  # the next one lies farther counter-clockwise, which one sees from outside on the right
-                assert strip.ray[bed & (strip.side == k)].max() < strip.ray[bed & (strip.side == (k + 1) % 4)].min()
+                assert strip.ray[bed & (side == k)].max() < strip.ray[bed & (side == (k + 1) % 4)].min()
 
 
 def test_a_view_of_nothing_crosses_nothing():
