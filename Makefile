@@ -49,7 +49,7 @@ table: .venv/ready
 	@$(RUN) -m gnl report --out "$(TABLE)"
 
 test: .venv/ready
-	@$(RUN) -m pytest -n auto --dist loadfile
+	@$(RUN) -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 lint: .venv/ready
 	@$(RUN) -m ruff check .

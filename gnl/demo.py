@@ -188,7 +188,7 @@ def draw_stages(folder, senses, grid, starts, stream):
     strip = [part[0] for part in cast(world, pose).dense()]
     view = draw.view(large[0], 512)
     pictures = {
-        "1-home": draw.home(world, 900, grid, starts, pose[0]),
+        "1-home": draw.home(world, 820, grid, starts, pose[0]),
         "2-view": draw.sheet([view], [f"what the robot sees; its net gets {size} x {size} pixels of it"]),
         "3-labels": draw.sheet([draw.sheet([draw.labels(labels[0], 384), draw.labels(true[0], 384)],
                                            ["what the net recognises", "the truth"], margin=6),

@@ -52,7 +52,6 @@ def home(world, width_px=640, grid=None, starts=(), shown=None):
     if len(starts):
         plan.starts(starts, QUIET)
         marks["start"] = f"the {len(starts)} starts of the test"
-    plan.names()
     if shown is not None:
         plan.sight(shown)
         plan.robot(shown)

@@ -14,7 +14,7 @@ from .floor_map import BAR, BELIEF, FAINT, INK, PAPER, QUIET, ROBOT, Canvas
 BETTER, WORSE = np.array([0, 114, 178]), np.array([213, 94, 0])
 LINES = {"Ours": (0, 114, 178), "MV": (112, 116, 124), "Scan": (0, 140, 100), "Ours+": (213, 94, 0)}
 USUAL = BELIEF, ROBOT, INK, QUIET
-CELL_PX, RIM_PX, STRONGEST = (54, 34), (64, 44), 15.0  # points at which a colour is full
+CELL_PX, RIM_PX, STRONGEST = (41, 34), (52, 44), 15.0  # points at which a colour is full
 
 
 def heat_maps(of_world, gaps_m, gaps_deg, title="Ours - MV, in points"):
@@ -25,7 +25,7 @@ def heat_maps(of_world, gaps_m, gaps_deg, title="Ours - MV, in points"):
 
 def _heat_map(points, gaps_m, gaps_deg):
     (w, h), (left, bottom) = CELL_PX, RIM_PX
-    page = Canvas(left + w * len(gaps_m) + 4, h * len(gaps_deg) + bottom)
+    page = Canvas(left + w * len(gaps_m) + 2, h * len(gaps_deg) + bottom)
     for i, m in enumerate(gaps_m):
         page.text((left + w * (i + 0.5), h * len(gaps_deg) + 12), f"{m:g} m", 12, QUIET, "mm")
         for j, deg in enumerate(gaps_deg):
@@ -47,7 +47,7 @@ def shade(value):
     return tuple(mixed.round().astype(int).tolist())
 
 
-def curves(of_world, width=300, height=190):
+def curves(of_world, width=260, height=190):
     """Right answers by checkpoint, Ours with its 95 % interval: {world: {method: (C, checkpoints) in 0..1}}."""
     plots = {}
     for world, methods in of_world.items():

@@ -1,6 +1,4 @@
-"""Paper to draw on, and a home seen from above on it.
-
-Pictures are drawn twice as large and then shrunk, which makes their lines smooth.
+"""Paper to draw on, and a home seen from above on it; all drawn twice as large and shrunk, so that lines are smooth.
 
     px   of the finished picture, (column, row), row 0 at the top
     m    on maps, x to the right, y up; cells are named as on a chess board: columns A, B, ..., rows 1, 2, ...
@@ -10,6 +8,7 @@ import copy
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+from scipy.spatial import cKDTree
 
 from .classes import PALETTE, WALL
 from .free_space import box_distance
@@ -58,7 +57,7 @@ class Canvas:
 
     def text(self, at, words, size=12, colour=INK, anchor="lm", halo=None):
         self.pen.text(_enlarged([at])[0], words, colour, ImageFont.load_default(SMOOTH * size), anchor,
-                      stroke_width=SMOOTH if halo else 0, stroke_fill=halo)
+                      stroke_width=2 * SMOOTH if halo else 0, stroke_fill=halo)
 
     def paste(self, picture, x, y):
         large = picture.resize((SMOOTH * picture.width, SMOOTH * picture.height), Image.Resampling.NEAREST)
@@ -69,10 +68,7 @@ class Canvas:
 
 
 class Map(Canvas):
-    """A home seen from above, to draw on in metres; as high as it needs if no height is given.
-
-    With a PlaceGrid it shows the cells. Hanging things are pale with a strong outline, flat ones pale.
-    """
+    """A home from above, to draw on in metres; with a PlaceGrid its cells; as high as it needs if no height is set."""
 
     def __init__(self, world, width_px=640, height_px=None, grid=None):
         self.world, self.grid = world, grid
@@ -81,20 +77,19 @@ class Map(Canvas):
             high = np.maximum(high, grid.origin + np.array([grid.nx, grid.ny]) * grid.cell_m)
         room = np.array([width_px, height_px or np.inf]) - 2 * RIM_PX
         self.px_per_m = (room / (high - low)).min()
-        self.upper_left = np.array([low[0], high[1]])
-        width, height = (high - low) * self.px_per_m
+        self.upper_left, (width, height) = np.array([low[0], high[1]]), (high - low) * self.px_per_m
         super().__init__(width_px, height_px or height + 2 * RIM_PX)
         self.shift = np.array([self.width - width, self.height - height]) / 2
-        self.named = self._spots_of_names()
+        self.marks, self.named = np.empty((0, 2)), None  # what names keep away from [m], and where they are
         self._floor()
         self._things()
-        self.names()
         start, end = self.at((high[0] - 2, high[1])) - (0, 9), self.at(high) - (0, 9)
         self.line([start - (0, 4), start, end, end - (0, 4)])
         self.text(start - (5, 1), "2 m", 11, INK, "rm")
 
-    def at(self, xy):
-        """Where points are in the picture: (..., 2) m -> (..., 2) px."""
+    def at(self, xy, taken=False):
+        """Where points are in the picture: (..., 2) m -> (..., 2) px. Names of rooms keep away from what is `taken`."""
+        self.marks = np.append(self.marks, xy, 0) if taken else self.marks
         return self.shift + (np.asarray(xy, float) - self.upper_left) * self.px_per_m * [1, -1]
 
     def sight(self, pose, colour=ROBOT, farthest_m=9.0):
@@ -106,16 +101,16 @@ class Map(Canvas):
 
     def robot(self, pose, colour=ROBOT):
         """A robot, and where it looks."""
-        self.dial(self.at(pose[:2]), pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
+        self.dial(self.at([pose[:2]], True)[0], pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
 
     def starts(self, poses, colour=ROBOT):
         """Many poses, each a little arrow."""
-        for pose in poses:
-            self.arrow(self.at(pose[:2]), pose[2], 15, colour)
+        for middle, pose in zip(self.at(np.asarray(poses)[:, :2], True), poses, strict=True):
+            self.arrow(middle, pose[2], 15, colour)
 
     def path(self, poses, colour=ROBOT):
         """The way along some poses, a dot at each."""
-        points = self.at(np.asarray(poses)[:, :2])
+        points = self.at(np.asarray(poses)[:, :2], True)
         self.line(points, (*colour, 170), 2)
         for point in points:
             self.disc(point, 3, colour, PAPER)
@@ -126,7 +121,7 @@ class Map(Canvas):
         total = np.cumsum(weight, dtype=float)
         chosen = np.searchsorted(total, (np.arange(n) + 0.5) / n * total[-1])
         dots = np.stack([x, y], 1)[chosen]
-        for dot, tip in zip(self.at(dots), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
+        for dot, tip in zip(self.at(dots, True), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
             self.line([dot, tip], (*colour, 70))
             self.disc(dot, 1.5, (*colour, 80))
 
@@ -156,9 +151,15 @@ class Map(Canvas):
         return (w.label != WALL) & ((w.z[:, 0] >= ROBOT_HEIGHT_M) | (w.z[:, 1] <= STEP_M))
 
     def names(self):
-        """The names of the rooms, once more where something may have covered them."""
-        for middle, name in self.named:
-            self.text(middle, name, NAME_PX, QUIET, "mm", (*PAPER, 160))
+        """Settle where the names of the rooms stand: away from what has been drawn so far."""
+        self.named = self._spots_of_names()
+
+    def picture(self):
+        """The map, and above all else the names of its rooms."""
+        top = self.copy()
+        for middle, name in self._spots_of_names() if self.named is None else self.named:
+            top.text(middle, name, NAME_PX, QUIET, "mm", (*PAPER, 190))
+        return Canvas.picture(top)
 
     def copy(self):
         """The map as it is now, to draw further on."""
@@ -188,7 +189,7 @@ class Map(Canvas):
         for i in np.argsort(w.z[:, 1], kind="stable"):  # from above one sees the highest
             if w.label[i] != WALL:
                 self.polygon(self._outline(i), colour_of(w.label[i], 70 if pale[i] else 255),
-                             colour_of(w.label[i]) if hangs[i] else (*INK, 90))
+                             colour_of(w.label[i]) if hangs[i] else (*INK, 90))  # what hangs has a strong outline
         walls = np.flatnonzero((w.label == WALL) & (w.z[:, 0] <= 0))  # and not the wall above a door
         for colour, less_px in ((QUIET, 0), (colour_of(WALL), 1)):  # all rims first: they end where walls meet
             for i in walls:
@@ -201,8 +202,8 @@ class Map(Canvas):
         return self.at(self.world.centre[i] + np.array([ahead + left, left - ahead, -ahead - left, ahead - left]))
 
     def _spots_of_names(self):
-        """The middle [px] of each room's name, in the room, where few things are in the way and no other name is."""
-        w, named = self.world, []
+        """The middle [px] and name of each room, where few things or marks are in the way and no other name is."""
+        w, named, marks = self.world, [], cKDTree(self.marks)
         taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
         for room in w.plan.get("rooms", []):
             name, parts = str(room.get("type", "")), np.array(cover_polygon(room["polygon"]))
@@ -214,7 +215,8 @@ class Map(Canvas):
             if not len(spots):
                 continue  # no room for a name
             along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
-            free = box_distance(along, w.centre, w.half, w.angle).min(1).reshape(-1, 7).min(1)
+            free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
+            free = free.reshape(-1, 7).min(1)
             beyond = box_distance(along, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1).reshape(-1, 7).max(1)
             best = spots[(free - 2 * beyond - 0.05 * np.hypot(*(spots - (low + high) / 2).T)).argmax()]
             taken = np.append(taken, [[best, size]], 0)

@@ -19,7 +19,7 @@ from .files import write_whole
 from .places import wrap_angle
 from .robot import ACTIONS
 
-WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX = 960, 540, (448, 424), 240
+WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX, GAP_PX = 830, 566, (412, 412), 192, 10  # GitHub's pages are 830
 KEY = {"robot": "robot", "sight": "its view", "particles": "particles", "right": "answer, right", "wrong": "or wrong"}
 LOOK_S, MOTION_S, LAST_S, N_MOTION = 1.6, 0.12, 3.2, 3
 DECIDE, DOING = ("turn left", "turn right", "go forward"), ("turning left", "turning right", "going forward")
@@ -35,7 +35,7 @@ class Look:
     pooled: np.ndarray  # (K,) its belief
     particles: tuple  # x, y, theta, weight, (M,) each
     states: np.ndarray  # (K,) reciprocal ranks of this view
-    view: np.ndarray  # (240, 240, 3) what the camera sees
+    view: np.ndarray  # (192, 192, 3) what the camera sees
     labels: np.ndarray  # (64, 64) what the net makes of it
     graph: object  # SceneGraphs of this view
     q: np.ndarray  # (A,) values of the next actions, or None
@@ -78,6 +78,10 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, rules=None):
 def frames(looks, world, grid):
     """Pictures of an episode and how long to show each: list of (PIL.Image, seconds)."""
     home = floor_map.Map(world, *MAP_PX, grid)
+    whole = home.copy()
+    whole.path([look.pose for look in looks])
+    whole.names()
+    home.named = whole.named  # in all frames where the robot never comes
     panels = [_panels(look, grid) for look in looks]
     shown = []
     for t, (look, panel) in enumerate(zip(looks, panels, strict=True)):
@@ -103,7 +107,9 @@ def gif(shown):
     # The colours that mean something stay as they are: no other one may be near them.
     f = floor_map
     pale = (draw.PALETTE + 255.0) / 2  # labels under a graph
-    exact = np.array([*draw.PALETTE, *pale, *f.TINTS, f.PAPER, f.INK, f.QUIET, f.FAINT, f.ROBOT, f.RIGHT, f.WRONG])
+    clouds = f.PAPER + np.linspace(0.2, 1, 9)[:, None] * np.subtract(f.BELIEF, f.PAPER)  # particles, few to many
+    exact = np.array([*draw.PALETTE, *pale, *clouds, *f.TINTS, f.PAPER, f.INK, f.QUIET, f.FAINT, f.ROBOT, f.RIGHT,
+                      f.WRONG])
     others = np.array(wall.quantize(256 - len(exact)).getpalette()).reshape(-1, 3)
     others = others[abs(others[:, None] - exact).max(2).min(1) > 8]
     palette = Image.new("P", (1, 1))
@@ -123,8 +129,8 @@ def save_gif(looks, world, grid, path):
 def _panels(look, grid):
     """What a look is and says, in pictures: view, graph on labels, ranks, belief."""
     return (draw.view(look.view, VIEW_PX), draw.graph(look.graph, draw.labels(look.labels, VIEW_PX), full=False),
-            draw.ranks(grid, look.states, look.place, 6, 176),
-            draw.ranks(grid, look.pooled, look.place, 6, 168, ("rank", "place", "belief")))
+            draw.ranks(grid, look.states, look.place, 6, VIEW_PX),
+            draw.ranks(grid, look.pooled, look.place, 6, VIEW_PX, ("rank", "place", "belief")))
 
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
@@ -137,24 +143,25 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     plan.sight(pose)
     plan.path([*(earlier.pose for earlier in looks[:t + 1]), pose])
     plan.robot(pose)
-    page.paste(plan.picture(), 8, 46)
-    page.paste(draw.legend([], KEY), 28, 484)
-    page.paste(draw.legend(), 28, 510)
+    page.paste(plan.picture(), 4, 44)
+    page.text((24, 478), f"answer {'right' if right else 'wrong'}", 16, verdict)
+    page.text((140, 479), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
+    page.paste(draw.legend([], KEY), 24, 506)
+    page.paste(draw.legend(), 24, 534)
 
-    page.text((28, 28), f"look {t + 1} of {len(looks)}", 20)
-    page.text((146, 29), doing, 15, floor_map.ROBOT)
-    parts = [("the robot sees", 464, 72), ("it recognises", 712, 72), ("this view says", 464, 348),
-             ("the filter believes", 648, 348), ("value of next action", 832, 348)]
+    page.text((24, 26), f"look {t + 1} of {len(looks)}", 20)
+    page.text((142, 27), doing, 15, floor_map.ROBOT)
+    x0, x1 = WIDTH_PX - 2 * VIEW_PX - 2 * GAP_PX, WIDTH_PX - VIEW_PX - GAP_PX
+    parts = [("the robot sees", x0, 72), ("it recognises", x1, 72), ("this view says", x0, 300),
+             ("the filter believes", x1, 300), ("value of next action", x0, 470)]
     pictures = panel if look is looks[-1] else [*panel, _actions(look.q, action)]
     for (title, x, y), picture in zip(parts, pictures, strict=False):
         page.text((x, y - 13), title, 13)
         page.paste(picture, x, y)
-    page.text((464, 497), f"answer {'right' if right else 'wrong'}", 16, verdict)
-    page.text((580, 498), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
-    page.text((948 - 22 * len(looks) - 8, 29), "answers", 13, anchor="rm")
-    for i, other in enumerate(looks):  # as they were so far
-        known = [other.answer == other.place] if i <= t else []
-        _tick(page, (948 - 22 * (len(looks) - 1 - i) - 8, 28), *known)
+    ends = WIDTH_PX - GAP_PX - 8 - 22 * np.arange(len(looks))[::-1]
+    page.text((ends[0] - 16, 27), "answers", 13, anchor="rm")
+    for i, (other, x) in enumerate(zip(looks, ends, strict=True)):  # as they were so far
+        _tick(page, (x, 26), *([other.answer == other.place] if i <= t else []))
     return page.picture()
 
 
@@ -166,19 +173,19 @@ def _tick(page, at, right=None):
         page.line(np.add(points, at), floor_map.PAPER, 2)
 
 
-def _actions(q, chosen, width_px=120, line_px=38):
+def _actions(q, chosen, width_px=2 * VIEW_PX + GAP_PX):
     """The values of the actions (A,), if known, as bars from a common zero; the chosen one in orange."""
+    left, line_px = 60, draw.LINE_PX
     page = floor_map.Canvas(width_px, line_px * len(ACTIONS))
     low, high = (min(0, *q), max(0, *q)) if q is not None else (0, 0)
-    scale = (width_px - 3) / max(high - low, 1e-9)
-    zero = 1 - low * scale
+    scale = (width_px - left - 44) / max(high - low, 1e-9)
+    zero = left - low * scale
     for a, name in enumerate(ACTIONS):
         y, ink = line_px * a + 9, floor_map.ROBOT if a == chosen else floor_map.INK
         page.text((0, y), name, 12, ink)
         if q is not None:
-            page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
             x0, x1 = sorted((zero, zero + q[a] * scale))
-            colour = ink if a == chosen else floor_map.BAR
-            page.polygon([(x0, y + 9), (x1, y + 9), (x1, y + 19), (x0, y + 19)], colour)
-            page.line([(zero, y + 7), (zero, y + 21)])
+            page.polygon([(x0, y - 5), (x1, y - 5), (x1, y + 5), (x0, y + 5)], ink if a == chosen else floor_map.BAR)
+            page.line([(zero, y - 7), (zero, y + 7)])
+            page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
     return page.picture()

@@ -1,6 +1,7 @@
 """Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones that are there."""
 
 import copy
+import functools
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,14 @@ from gnl.world import World
 
 FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
 FOUND = sorted((Path(__file__).parents[2] / "shared" / "homes").glob("*.json"))
+LONGEST = "test_tutorials", "test_table", "test_demo", "test_camera", "test_rooms", "test_pipeline", "test_draw"
+drawn, loaded = functools.cache(make_home), functools.cache(World.load)  # many files ask for the same homes
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items):
+    """The files that take longest first, so that no worker is left alone with one at the end."""
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
 
 
 def thing(kind, x, y, length, width, height, z0=0.0, angle=0.0):
@@ -58,7 +67,7 @@ def two_rooms():
 @pytest.fixture(scope="session", params=[1, 5])
 def home(request):
     """A procedural home."""
-    return make_home(request.param)
+    return drawn(request.param)
 
 
 def strewn_plan(seed):
@@ -92,4 +101,4 @@ def real_home_path(request):
 
 @pytest.fixture(scope="session")
 def real_home(real_home_path):
-    return World.load(real_home_path)
+    return loaded(real_home_path)

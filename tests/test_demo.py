@@ -1,6 +1,8 @@
 """The demonstration at the smallest scale: it runs, again in less time, after Ctrl-C and after a kill."""
 
 import ast
+import contextlib
+import io
 import os
 import re
 import signal
@@ -15,13 +17,14 @@ import pytest
 from PIL import Image
 
 import data_gen
+from data_gen.__main__ import main as draw_data
 from gnl import demo
 from gnl.__main__ import main
 from gnl.files import load_arrays, save_arrays
 
 FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
 SMALLEST = [f"--{name}={n}" for name, n in {"net-epochs": 1, "gcn-views": 128, "gcn-epochs": 2, "gcn-batch": 32,
-                                            "episodes": 64, "scan-starts": 2, "tests": 8}.items()]
+                                            "episodes": 64, "scan-starts": 2, "tests": 4}.items()]
 PICTURES = {"1-home.png", "2-view.png", "3-labels.png", "4-strip.png", "5-graph.png", "6-ranks.png", "episode.gif"}
 PARTS = ["gcn", "net", "nnql", "scan"]
 
@@ -51,6 +54,14 @@ def stop(process, sign, folder, part):
     return end(process)
 
 
+def here(*options):
+    """The command in this process: exit status, lines on stdout, text on stderr."""
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err, \
+            pytest.raises(SystemExit) as exit:
+        main(["demo", "--plan", str(FLAT), *map(str, options), *SMALLEST])
+    return SimpleNamespace(status=exit.value.code, lines=out.getvalue().splitlines(), err=err.getvalue())
+
+
 def files(folder):
     """Bytes and time of every file, by name."""
     return {path.relative_to(folder): (path.read_bytes(), path.stat().st_mtime_ns)
@@ -62,31 +73,38 @@ def learned(folder):
 
 
 def table(run):
-    """The lines of a run without times, and without what differs when a part was there before."""
-    return [re.sub(r"(, learned before|, raced meanwhile)? +[\d.]+ s$", "", line) for line in run.lines
-            if "the paper" not in line and not line.startswith("  view ")]
+    """The lines of a run without times, without its folder, and without what differs when a part was there before."""
+    return [re.sub(r"(, learned before|, raced meanwhile)? +[\d.]+ s$", "", line).replace(str(run.pictures), "FOLDER")
+            for line in run.lines if "the paper" not in line and not line.startswith("  view ")]
 
 
 @pytest.fixture(scope="module")
 def views(tmp_path_factory):
     path = tmp_path_factory.mktemp("data") / "views.npz"
-    subprocess.run([sys.executable, "-m", "data_gen", "views", path, "--homes", "2", "--views", "64"], check=True,
-                   capture_output=True)
+    with pytest.raises(SystemExit) as exit:
+        draw_data(["views", str(path), "--homes", "2", "--views", "64"])
+    assert exit.value.code == 0
     return path
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory, views):
-    """Four runs in one folder: stopped by Ctrl-C, by a kill, and two that were left to end."""
+    """Four runs in one folder: stopped by Ctrl-C, by a kill, and two that were left to end.
+
+    The third finds an old picture in its way; the last, in this process, draws into a folder of its own.
+    """
     out = tmp_path_factory.mktemp("demo") / "out"
     interrupted = stop(start(out, views), signal.SIGINT, out, "net")
     interrupted.files = files(out)
     killed = stop(start(out, views), signal.SIGKILL, out, "gcn")
     killed.files = files(out)
+    (out / "demo").mkdir()
+    (out / "demo" / "1-home.png").write_bytes(b"old")
     first = end(start(out, views))
-    first.files = files(out)
-    second = end(start(out, views))
-    second.files = files(out)
+    first.files, first.pictures = files(out), out / "demo"
+    pictures = tmp_path_factory.mktemp("elsewhere") / "my pictures" / "flat"
+    second = here("--views", views, "--out", out, "--pictures", pictures)
+    second.files, second.pictures = files(out), pictures
     return SimpleNamespace(out=out, interrupted=interrupted, killed=killed, first=first, second=second)
 
 
@@ -136,11 +154,9 @@ def test_a_second_run_learns_nothing_and_says_the_same(runs):
     assert runs.second.status == 0
     assert runs.second.err == ""
     assert table(runs.second) == table(runs.first)
-    before, after = runs.first.files, runs.second.files
-    assert before.keys() == after.keys()
-    for name in before:
-        assert after[name][0] == before[name][0]  # pictures, too
-        assert name.parts[0] == "demo" or after[name][1] == before[name][1]
+    assert runs.second.files == runs.first.files
+    for name in PICTURES:
+        assert (runs.second.pictures / name).read_bytes() == (runs.first.pictures / name).read_bytes()
 
 
 def test_a_part_that_was_there_says_so_and_a_new_one_does_not(runs):
@@ -155,15 +171,10 @@ def test_the_last_line_names_the_folder_of_the_pictures(runs):
     assert f"episode.gif in {runs.out / 'demo'} " in runs.first.lines[-1]
 
 
-def test_the_pictures_go_where_they_are_told_to(tmp_path, runs, views, capsys):
-    folder = tmp_path / "my pictures" / "flat"
-    with pytest.raises(SystemExit) as exit:
-        main(["demo", "--plan", str(FLAT), "--views", str(views), "--out", str(runs.out), "--pictures", str(folder),
-              *SMALLEST])
-    assert exit.value.code == 0
-    assert {path.name for path in folder.iterdir()} == PICTURES
-    assert f"episode.gif in {folder} " in capsys.readouterr().out.splitlines()[-1]
-    assert files(runs.out).keys() == runs.second.files.keys()
+def test_the_pictures_go_where_they_are_told_to(runs):
+    assert {path.name for path in runs.second.pictures.iterdir()} == PICTURES
+    assert f"episode.gif in {runs.second.pictures} " in runs.second.lines[-1]
+    assert runs.second.files.keys() == runs.first.files.keys()
 
 
 @pytest.mark.parametrize(("plan", "folder"), [("", "out/demo"), ("a/flat.json", "out/demo-flat"),

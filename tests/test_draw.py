@@ -164,6 +164,7 @@ def test_no_letter_is_smaller_than_eleven_pixels(world, grid, monkeypatch):
 @pytest.mark.parametrize("width", [160, 448, 900])
 def test_names_of_rooms_do_not_touch_one_another(real_home, width):
     plan = floor_map.Map(real_home, width, grid=PlaceGrid(real_home))
+    plan.names()
     assert len(plan.named) == len(real_home.plan.get("rooms", [])) or width == 160
     boxes = [(middle, np.array([floor_map.text_width(name, floor_map.NAME_PX), floor_map.NAME_PX]) / 2)
              for middle, name in plan.named]
@@ -175,11 +176,38 @@ def test_names_of_rooms_do_not_touch_one_another(real_home, width):
 def test_names_of_rooms_that_lie_open_to_one_another_keep_to_their_rooms():
     flat = World.load(FLAT)
     plan = floor_map.Map(flat, 448)
+    plan.names()
     rooms = {room["type"]: plan.at(room["polygon"]) for room in flat.plan["rooms"]}
     for middle, name in plan.named:
         half = floor_map.text_width(name, floor_map.NAME_PX) / 2
         assert rooms[name][:, 0].min() < middle[0] - half
         assert rooms[name][:, 0].max() > middle[0] + half
+
+
+@pytest.mark.parametrize("draw_at", [lambda plan, poses: plan.robot(poses[0]), lambda plan, poses: plan.path(poses),
+                                     lambda plan, poses: plan.starts(poses),
+                                     lambda plan, poses: plan.particles((*poses.T, np.ones(len(poses))))])
+def test_names_of_rooms_keep_away_from_what_is_drawn(world, draw_at):
+    plan = floor_map.Map(world, 640)
+    plan.names()
+    (before, name), = plan.named
+    there = [(before - plan.at([0, 0])) / plan.px_per_m * [1, -1]]
+    draw_at(plan, np.pad(there, ((0, 2), (0, 1)), "edge"))
+    assert plan.named[0][0] is before  # settled is settled
+    plan.names()
+    (after, _), = plan.named
+    assert (abs(after - before) > [floor_map.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2]).any()
+
+
+def test_names_of_rooms_stand_above_all_that_is_drawn(world):
+    plan = floor_map.Map(world, 640)
+    plan.names()
+    (middle, name), = plan.named
+    plan.box(0, 0, plan.width, plan.height, floor_map.ROBOT)
+    half = floor_map.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2
+    picture = plan.picture().crop((*(middle - half), *(middle + half)))
+    assert (np.array(picture) == floor_map.ROBOT).all(2).mean() < 0.5  # the rest is letters, and light around them
+    assert plan.picture() == plan.picture()
 
 
 def test_a_wall_stands_in_the_strip_at_its_distance(world):

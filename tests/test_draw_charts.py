@@ -27,6 +27,18 @@ def test_a_heat_map_has_a_field_for_each_gap_and_grey_where_nothing_is_known():
     assert (full == draw_charts.FAINT).all(2).sum() == 0 < (less == draw_charts.FAINT).all(2).sum()
 
 
+def test_charts_of_three_homes_fit_a_page_of_830_px_with_letters_of_at_least_11(monkeypatch):
+    sizes, text = [], draw_charts.Canvas.text
+    monkeypatch.setattr(draw_charts.Canvas, "text", lambda page, at, words, size=12, *how: (
+        sizes.append(size), text(page, at, words, size, *how)))
+    points = {(m, deg): -12.3 for m in GAPS_M for deg in GAPS_DEG}
+    methods = dict.fromkeys(draw_charts.LINES, np.full((2, 10), 0.5))
+    assert draw_charts.heat_maps(dict.fromkeys((800, 801, 809), points), GAPS_M, GAPS_DEG).width <= 830
+    assert draw_charts.curves(dict.fromkeys((800, 801, 809), methods)).width <= 830
+    assert draw_charts.histogram({0: 2}).width <= 830
+    assert min(sizes) >= 11
+
+
 @pytest.fixture
 def written(monkeypatch):
     """Words and where they were written, (x, y, words) each."""
@@ -69,7 +81,7 @@ def test_on_a_heat_map_wider_gaps_lie_farther_right_and_sharper_turns_higher_up(
             middles[gap, value] = spots(picture, draw_charts.shade(value))[0]
         assert middles[gap, 12.0] == pytest.approx(middles[gap, -12.0], abs=3)
     columns = [middles[(m, 10), 12.0][0] for m in gaps_m]
-    assert np.diff(columns) == pytest.approx([54] * 3, abs=1)
+    assert np.diff(columns) == pytest.approx([41] * 3, abs=1)
     for m in gaps_m:
         (x, y), (above_x, above_y) = middles[(m, 10), 12.0], middles[(m, 90), 12.0]
         assert (above_x - x, above_y - y) == pytest.approx((0, -34), abs=1)
@@ -79,9 +91,9 @@ def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_
     n, rising = 5, np.linspace(0.35, 0.65, 5)
     methods = {"Ours": np.tile(rising, (4, 1)), "Scan": np.repeat([[0.33], [0.67], [0.5]], n, 1)}
     picture = draw_charts.curves({800: methods})
-    inside = np.array(picture)[:, :12 + 300 - 52]  # without the names at the right
+    inside = np.array(picture)[:, :12 + 260 - 52]  # without the names at the right
     ours = [np.nonzero(abs(inside[:, x] - np.array(draw_charts.LINES["Ours"])).max(1) < 60)[0].mean()
-            for x in (62, 108, 208, 254)]  # not where the lines cross
+            for x in (60, 96, 176, 212)]  # not where the lines cross
     _, scan_first, scan_last, _ = spots(inside, draw_charts.LINES["Scan"])
     assert (np.diff(ours) < 0).all()
     assert ours[0] + ours[-1] == pytest.approx(scan_first[1] + scan_last[1], abs=3)  # the mean of Scan lies half-way
@@ -90,7 +102,7 @@ def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_
     assert first[1] < min(ours) < max(ours) < last[1]
     assert last[0] == pytest.approx(scan_last[0], abs=2)
     assert (first[1] + last[1]) / 2 == pytest.approx((scan_first[1] + scan_last[1]) / 2, abs=1)  # 30, 70 and 50 %
-    names = {name: spots(np.array(picture)[:, 12 + 300 - 50:], draw_charts.LINES[name])[0][1] for name in methods}
+    names = {name: spots(np.array(picture)[:, 12 + 260 - 50:], draw_charts.LINES[name])[0][1] for name in methods}
     assert names["Ours"] < names["Scan"]
     methods["Ours"] = methods["Ours"] + [[-0.1], [0.1], [0], [0]]
     band = np.array(draw_charts.curves({800: methods}))

@@ -66,22 +66,48 @@ def test_a_frame_for_each_look_each_decision_and_some_between(parts, looks, tmp_
     assert [path.name for path in tmp_path.iterdir()] == ["episode.gif"]
     assert (tmp_path / "episode.gif").stat().st_size < 1.5e6
     with Image.open(tmp_path / "episode.gif") as film:
-        assert film.size == (960, 540)
+        assert film.size == (830, 566)  # a page on GitHub is 830 px wide: it makes no letter smaller
         assert film.n_frames == 3 + 2 + 2 * replay.N_MOTION
         assert film.info["loop"] == 0  # for ever
         assert film.info["duration"] == 1600
         page = np.array(film.convert("RGB"))
-    for colour in (floor_map.PAPER, draw.PALETTE[3], floor_map.ROBOT):
+    for colour in (floor_map.PAPER, draw.PALETTE[3], floor_map.ROBOT, floor_map.BELIEF):
         assert (page == colour).all(-1).any(), colour
 
 
 def test_right_answers_are_green_and_wrong_ones_red(parts, looks):
     world, grid, *_ = parts
     pictures = [np.array(picture) for picture, seconds in replay.frames(looks[:1], world, grid)]
-    dot = pictures[0][20:37, 932:949]
+    dot = pictures[0][18:35, 804:821]
     right = looks[0].answer == looks[0].place
     assert (dot == (floor_map.RIGHT if right else floor_map.WRONG)).all(-1).sum() > 100
     assert (dot[4:12, 4:12] == floor_map.PAPER).all(-1).any()  # a tick or a cross, for eyes that see no red
+
+
+def test_no_letter_of_a_frame_is_smaller_than_eleven_pixels_or_cut_off(parts, looks, monkeypatch):
+    _, grid, *_ = parts
+    written, text = [], floor_map.Canvas.text
+
+    def note(page, at, words, size=12, colour=floor_map.INK, anchor="lm", halo=None):
+        left = at[0] - {"l": 0, "m": 0.5, "r": 1}[anchor[0]] * floor_map.text_width(words, size)
+        written.append((size, left, left + floor_map.text_width(words, size) - page.width))
+        text(page, at, words, size, colour, anchor, halo)
+
+    monkeypatch.setattr(floor_map.Canvas, "text", note)
+    replay.frames(looks, parts[0], grid)
+    smallest, left, _ = np.min(written, 0)
+    assert smallest >= 11
+    assert left >= 0
+    assert max(beyond for *_, beyond in written) <= 0
+
+
+def test_names_of_rooms_do_not_move_from_frame_to_frame(looks, monkeypatch):
+    rooms = [{"type": "bedroom", "polygon": [[0, 0], [6, 0], [6, 4], [0, 4]]}]
+    world, spots, text = World({**PLAN, "rooms": rooms}), set(), floor_map.Canvas.text
+    monkeypatch.setattr(floor_map.Canvas, "text", lambda page, at, words, *how, **more: (
+        spots.add(tuple(at)) if words == "bedroom" else None, text(page, at, words, *how, **more)))
+    replay.frames(looks, world, PlaceGrid(world))
+    assert len(spots) == 1
 
 
 def test_a_tick_is_no_cross_and_what_is_to_come_is_neither():

@@ -111,7 +111,7 @@ def test_a_difference_is_that_of_the_pairs_with_its_interval_and_p(cells, writte
     assert float(points) == near(100 * d.mean())
     assert low < float(points) < high
     assert float(p) == pytest.approx(stats.binomtest(int((d > 0).sum()), int((d != 0).sum())).pvalue, rel=0.5)
-    assert row(part, "")[4:] == ["world 800", "world 801"]
+    assert row(part, "")[4:] == ["home 800", "home 801"]
     for world, words in zip((800, 801), worlds, strict=True):
         of_world = np.mean([of[a] - of[b] for (home, *_), of in cells.items() if home == world])
         assert float(words.split()[0]) == near(100 * of_world)
@@ -124,6 +124,30 @@ def test_as_many_episodes_are_named_as_pairs_and_as_no_pairs_would_need(cells, w
     for said, difference in ((ten, 0.1), (one, 0.01)):
         needed = [(1.959964 + 0.841621) ** 2 * variance / difference ** 2 for variance in variances]
         assert [int(n) for n in said.split(" / ")] == pytest.approx(needed, abs=1)
+
+
+def test_what_ours_knows_by_heart_is_told_by_gap(folder, written):
+    """Ours - MV and Ours - Scan, from the tests and from starts of training, by hand."""
+    part, found = section(written, "What Ours knows by heart"), {}
+    for path in sorted(folder.glob("cells/*.json")):
+        result = json.loads(path.read_bytes())
+
+        def share(outcome):
+            return 100 * outcome["place"][-1].count("1") / N
+
+        ours, known = share(result["checkpoints"][-1]), result["from training starts"]
+        numbers = [n for other in ("MV", "Scan") for n in (ours - share(result["tests"][other]),
+                                                           share(known["Ours"]) - share(known[other]))]
+        for group in ("all", f"T_xy {result['cell']['t_xy_m']} m"):
+            found.setdefault(group, []).append(numbers)
+    assert [head.rpartition(", ")[2] for head in row(part, "")[1:]] == ["tests", "training starts"] * 2
+    for group, numbers in found.items():
+        said = row(part, group)[1:]
+        assert [float(cell.split()[0]) for cell in said] == near(np.mean(numbers, 0).tolist())
+        for cell, column in zip(said, np.transpose(numbers), strict=True):
+            low, high = (float(end) for end in re.findall(r"[+-][\d.]+", cell)[1:])
+            assert low <= column.mean() + 0.051
+            assert high >= column.mean() - 0.051
 
 
 def test_locations_are_told_apart_from_places(written, cells):
@@ -161,19 +185,21 @@ def test_the_papers_own_differences_are_told(written):
     assert [row(part, name)[1] for name in ("MV - SV", "Ours - MV", "DA - Ours")] == ["+9.5", "+2.6", "-0.2"]
 
 
-def test_every_cell_stands_in_the_table_in_the_papers_order(cells, written):
-    part = section(written, "Table I")
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in part.strip().splitlines()]
-    heads = [f"{world} {method}" for world in (800, 801) for method in METHODS]
-    assert rows[0] == ["T_xy [m]", "T_theta [deg]", *heads]
-    gaps = [(float(m), int(deg)) for m, deg, *_ in rows[2:]]
-    assert gaps == sorted(GAPS, reverse=True)
-    for gap, (_, _, *numbers) in zip(gaps, rows[2:], strict=True):
-        for head, said in zip(heads, numbers, strict=True):
-            (world, method), (ours, *theirs) = head.split(), said.split()
-            assert float(ours) == near(100 * cells[(int(world), *gap)][method].mean())
-            papers = table_1()[(int(world), *gap)].get(method)
-            assert theirs == ([] if papers is None else [f"({papers:.0f})"])
+def test_every_cell_stands_in_the_table_of_its_home_in_the_papers_order(cells, written):
+    first, *parts = section(written, "Table I").split("Home ")
+    assert (first.strip(), len(parts)) == ("", 2)
+    for world, part in zip((800, 801), parts, strict=True):
+        assert part.startswith(f"{world}:")
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in part.splitlines() if "|" in line]
+        assert rows[0] == ["T_xy [m]", "T_theta [deg]", *METHODS]
+        gaps = [(float(m), int(deg)) for m, deg, *_ in rows[2:]]
+        assert gaps == sorted(GAPS, reverse=True)
+        for gap, (_, _, *numbers) in zip(gaps, rows[2:], strict=True):
+            for method, said in zip(METHODS, numbers, strict=True):
+                ours, *theirs = said.split()
+                assert float(ours) == near(100 * cells[(world, *gap)][method].mean())
+                papers = table_1()[(world, *gap)].get(method)
+                assert theirs == ([] if papers is None else [f"({papers:.0f})"])
 
 
 def test_costs_are_those_of_all_views(written):

@@ -53,3 +53,14 @@ def test_the_readme_says_what_the_report_says():
     for name, *numbers in ([cell.strip() for cell in line.split("|")[1:-1]] for line in said):
         assert numbers[0] == " ".join(row(REPORT, name)[:2])
         assert numbers[1] == (" ".join(row(papers, name)[:2]) if f"| {name} |" in papers.partition("\n## ")[0] else "")
+
+
+def test_what_pages_say_of_learning_by_heart_is_in_the_report():
+    part = REPORT.partition("## What Ours knows by heart")[2].partition("\n## ")[0]
+    mean, interval = row(part, "all")[1].split(" ", 1)
+    for page in ("README.md", "tutorials/10_active_localization.md"):
+        assert re.search(rf"{re.escape(mean)}\s+{re.escape(interval)}", (ROOT / page).read_text())
+    told = (RESULTS / "README.md").read_text().partition("**It learns by heart.**")[2].partition("\n\nThe wider")[0]
+    for name in ("all", "T_xy 0.2 m", "T_xy 0.6 m", "T_xy 1.0 m"):
+        tests, known, _, known_of_scan = row(part, name)
+        assert row(told, name) == [tests, known, known_of_scan]

@@ -1,10 +1,11 @@
 """The tutorials: every chapter runs and says what it prints, every grader tells right answers from wrong ones."""
 
 import ast
+import importlib
 import importlib.util
 import re
-import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -131,7 +132,7 @@ def shell_commands(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_the_commands_of_a_page_are_there(page):
+def test_the_commands_of_a_page_are_there(page, capsys):
     targets = set(re.findall(r"^([\w ]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
     known, variables = {name for names in targets for name in names.split()}, (ROOT / "Makefile").read_text()
     for program, *words in shell_commands(page):
@@ -142,9 +143,11 @@ def test_the_commands_of_a_page_are_there(page):
         else:
             assert program in (".venv/bin/python", "python")
             if words[0] == "-m":
-                help_ = subprocess.run([sys.executable, *words[:3], "--help"], capture_output=True, text=True, cwd=ROOT)
-                assert help_.returncode == 0
-                assert [word for word in words if word.startswith("--") and word not in help_.stdout] == []
+                with pytest.raises(SystemExit) as exit:
+                    importlib.import_module(f"{words[1]}.__main__").main([*words[2:3], "--help"])
+                assert exit.value.code == 0
+                help_ = capsys.readouterr().out
+                assert [word for word in words if word.startswith("--") and word not in help_] == []
             else:
                 assert (ROOT / words[0]).exists()
 
@@ -194,3 +197,13 @@ def test_right_answers_are_counted_and_wrong_ones_are_told_with_what_was_got_and
     assert lines[1] == "1.2  not yet: double of (1, 2) at (1,): got 4, expected 5"
     assert lines[2] == "1.3  not yet: shape: got shape (2,), expected (1, 2)"
     assert re.fullmatch(r"1\.4  not yet: TypeError in line \d+: .*", lines[3])
+
+
+@pytest.mark.parametrize(("got", "words"), [(Fraction(1, 3), None), (0.33333333, None), (Fraction(1, 4), "got 1/4"),
+                                            (None, "got None"), ([1 / 3], "shape")])
+def test_a_fraction_is_a_number_and_nothing_is_none(got, words):
+    if words:
+        with pytest.raises(grader.Wrong, match=words):
+            grader.expect("a third", got, 1 / 3)
+    else:
+        grader.expect("a third", got, 1 / 3)

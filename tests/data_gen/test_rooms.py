@@ -63,11 +63,16 @@ def grid(low, high, cell):
     return np.meshgrid(*(np.arange(a + cell / 2, b, cell) for a, b in zip(low, high, strict=True)))
 
 
-def overlaps(polygons, others):
-    """Pairs (i, j) of polygons that overlap, seen on a grid of 1 cm over what their bounds have in common."""
+def overlaps(polygons, others=None):
+    """Pairs (i, j) of polygons that overlap, seen on a grid of 1 cm over what their bounds have in common.
+
+    Without others, of the polygons among themselves: i < j.
+    """
+    among, others = others is None, polygons if others is None else others
     low = np.maximum(np.array([np.min(p, 0) for p in polygons])[:, None], [np.min(p, 0) for p in others])
     high = np.minimum(np.array([np.max(p, 0) for p in polygons])[:, None], [np.max(p, 0) for p in others])
-    for i, j in np.argwhere((high - low > 0.002).all(-1)):
+    near = (high - low > 0.002).all(-1)
+    for i, j in np.argwhere(np.triu(near, 1) if among else near):
         x, y = grid(low[i, j], high[i, j], min(0.01, (high[i, j] - low[i, j]).min() / 3))
         if (covers(polygons[i], x, y) & covers(others[j], x, y)).sum() > 2:
             yield int(i), int(j)
@@ -87,7 +92,9 @@ def regions(plan):
                   if thing["z0"] < ROBOT_HEIGHT_M and top(thing) > 0.05]
     free = np.ones(x.shape, bool)
     for polygon in obstacles:
-        free &= ~covers(polygon, x, y)
+        (x0, y0), (x1, y1) = np.min(polygon, 0), np.max(polygon, 0)
+        near = np.ix_((y[:, 0] >= y0) & (y[:, 0] <= y1), (x[0] >= x0) & (x[0] <= x1))  # else there is nothing to cover
+        free[near] &= ~covers(polygon, x[near], y[near])
     clearance = ndimage.distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1] * CELL_M
     return ndimage.label(clearance > ROBOT_M)[0], x, y
 
@@ -103,7 +110,7 @@ def collisions(plan):
     """Names of two things that share space."""
     things = plan["objects"]
     polygons = [thing["polygon"] for thing in things]
-    pairs = ((things[i], things[j]) for i, j in overlaps(polygons, polygons) if i < j)
+    pairs = ((things[i], things[j]) for i, j in overlaps(polygons))
     return [(a["name"], b["name"]) for a, b in pairs if min(top(a), top(b)) > max(a["z0"], b["z0"]) + 1e-3]
 
 

@@ -19,6 +19,8 @@ def expect(what, got, expected, tolerance=1e-6):
     got_array, expected_array = np.asarray(got), np.asarray(expected)
     if got_array.shape != expected_array.shape:
         raise Wrong(f"{what}: got shape {got_array.shape}, expected {expected_array.shape}")
+    if expected_array.dtype.kind in "biufc" and got_array.dtype.kind == "O":
+        got_array = got_array.astype(float)  # a Fraction is a number, too
     if expected_array.dtype.kind in "biufc" and got_array.dtype.kind in "biufc":
         same = np.isclose(got_array, expected_array, rtol=tolerance, atol=tolerance)
     else:
