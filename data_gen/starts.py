@@ -9,8 +9,9 @@ nearest test start and is turned by more than T_theta from it, so that no episod
 import numpy as np
 from scipy.spatial import cKDTree
 
+from gnl.canvas import BELIEF, ROBOT
 from gnl.draw import sheet
-from gnl.floor_map import BELIEF, ROBOT, Map
+from gnl.floor_map import Map
 from gnl.places import wrap_angle
 
 DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in

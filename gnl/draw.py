@@ -9,9 +9,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from .classes import CLASSES, N_CLASSES, PALETTE
-from .files import write_whole
-from .floor_map import (
+from .canvas import (
     BAR,
     BELIEF,
     FAINT,
@@ -23,12 +21,12 @@ from .floor_map import (
     ROBOT,
     WRONG,
     Canvas,
-    Map,
     colour_of,
-    column_name,
-    row_name,
     text_width,
 )
+from .classes import CLASSES, N_CLASSES, PALETTE
+from .files import write_whole
+from .floor_map import Map, column_name, row_name
 from .scene_graph import VIEW_PX, words_in_words
 
 SIZES = ("small", "medium", "large")

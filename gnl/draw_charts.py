@@ -7,9 +7,9 @@ import itertools
 
 import numpy as np
 
+from .canvas import BAR, BELIEF, FAINT, INK, PAPER, QUIET, ROBOT, Canvas
 from .compare import over_cells
 from .draw import sheet
-from .floor_map import BAR, BELIEF, FAINT, INK, PAPER, QUIET, ROBOT, Canvas
 
 BETTER, WORSE = np.array([0, 114, 178]), np.array([213, 94, 0])
 LINES = {"Ours": (0, 114, 178), "MV": (112, 116, 124), "Scan": (0, 140, 100), "Ours+": (213, 94, 0)}

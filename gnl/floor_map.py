@@ -1,74 +1,28 @@
-"""Paper to draw on, and a home seen from above on it; all drawn twice as large and shrunk, so that lines are smooth.
+"""A home seen from above, to draw on in metres.
 
     px   of the finished picture, (column, row), row 0 at the top
-    m    on maps, x to the right, y up; cells are named as on a chess board: columns A, B, ..., rows 1, 2, ...
+    m    x to the right, y up; cells are named as on a chess board: columns A, B, ..., rows 1, 2, ...
 """
 
-import copy
-
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
 from scipy.spatial import cKDTree
 
-from .classes import PALETTE, WALL
+from .canvas import BELIEF, INK, PAPER, QUIET, ROBOT, TINTS, Canvas, colour_of, text_width
+from .classes import WALL
 from .free_space import box_distance
 from .polygons import cover_polygon
 from .strip import cast, slopes
 from .world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M
 
-PAPER, INK, QUIET, BAR, FAINT = (255, 255, 255), (38, 40, 46), (112, 116, 124), (158, 164, 174), (216, 219, 224)
-ROBOT, BELIEF, RIGHT, WRONG = (213, 94, 0), (92, 60, 160), (0, 140, 100), (196, 30, 58)
-TINTS = (250, 242, 226), (232, 243, 236), (234, 240, 249), (250, 236, 232), (242, 237, 248), (241, 243, 226)
-SMOOTH, RIM_PX, LINE_PX = 2, 20, 19  # enlargement; around a map; from one line of text to the next
+RIM_PX = 20  # around a map
 NAME_PX, AIR_PX = 13, 5  # names of rooms: size of the letters, room around them
 
 
-class Canvas:
-    """Paper to draw on; all places and lengths in px of the finished picture, colours RGB or RGBA."""
-
-    def __init__(self, width, height):
-        self.width, self.height = round(width), round(height)
-        self.image = Image.new("RGB", (SMOOTH * self.width, SMOOTH * self.height), PAPER)
-        self.pen = ImageDraw.Draw(self.image, "RGBA")  # what lies below shines through a translucent colour
-
-    def polygon(self, points, fill=None, outline=None, width=1.0):
-        self.pen.polygon(_enlarged(points), fill, outline, round(SMOOTH * width))
-
-    def box(self, x0, y0, x1, y1, fill=None, outline=None, width=1.0):
-        corners = [SMOOTH * x0, SMOOTH * y0, SMOOTH * x1 - 1, SMOOTH * y1 - 1]
-        self.pen.rounded_rectangle(corners, 2 * SMOOTH, fill, outline, round(SMOOTH * width))
-
-    def line(self, points, colour=INK, width=1.0):
-        self.pen.line(_enlarged(points), colour, round(SMOOTH * width), "curve")
-
-    def disc(self, middle, radius, fill, outline=None, width=1.0):
-        self.pen.circle(_enlarged([middle])[0], SMOOTH * radius, fill, outline, round(SMOOTH * width))
-
-    def arrow(self, middle, theta, length, colour=INK):
-        """A dart that flies to the bearing theta, counter-clockwise from the right."""
-        forward, aside = np.array([[1, -1, -0.6, -1], [0, 0.65, 0, -0.65]])[..., None] * length / 2
-        ahead = np.array([np.cos(theta), -np.sin(theta)])
-        self.polygon(middle + forward * ahead + aside * ahead[::-1] * [1, -1], colour)
-
-    def dial(self, middle, theta, radius, colour):
-        """A disc, and on it the bearing theta."""
-        self.disc(middle, radius, colour, PAPER, 1.5)
-        self.arrow(middle, theta, 1.4 * radius, PAPER)
-
-    def text(self, at, words, size=12, colour=INK, anchor="lm", halo=None):
-        self.pen.text(_enlarged([at])[0], words, colour, ImageFont.load_default(SMOOTH * size), anchor,
-                      stroke_width=2 * SMOOTH if halo else 0, stroke_fill=halo)
-
-    def paste(self, picture, x, y):
-        large = picture.resize((SMOOTH * picture.width, SMOOTH * picture.height), Image.Resampling.NEAREST)
-        self.image.paste(large, (SMOOTH * round(x), SMOOTH * round(y)))
-
-    def picture(self):
-        return self.image.reduce(SMOOTH)
-
-
 class Map(Canvas):
-    """A home from above, to draw on in metres; with a PlaceGrid its cells; as high as it needs if no height is set."""
+    """A home from above; with a PlaceGrid its cells; as high as it needs if no height is set.
+
+    Hanging things are pale with a strong outline, flat ones pale. Names of rooms stand above all else.
+    """
 
     def __init__(self, world, width_px=640, height_px=None, grid=None):
         self.world, self.grid = world, grid
@@ -87,10 +41,14 @@ class Map(Canvas):
         self.line([start - (0, 4), start, end, end - (0, 4)])
         self.text(start - (5, 1), "2 m", 11, INK, "rm")
 
-    def at(self, xy, taken=False):
-        """Where points are in the picture: (..., 2) m -> (..., 2) px. Names of rooms keep away from what is `taken`."""
-        self.marks = np.append(self.marks, xy, 0) if taken else self.marks
+    def at(self, xy):
+        """Where points are in the picture: (..., 2) m -> (..., 2) px."""
         return self.shift + (np.asarray(xy, float) - self.upper_left) * self.px_per_m * [1, -1]
+
+    def _taken(self, xy):
+        """The same for (n, 2) m, from where names of rooms keep away from now on."""
+        self.marks = np.append(self.marks, xy, 0)
+        return self.at(xy)
 
     def sight(self, pose, colour=ROBOT, farthest_m=9.0):
         """What a robot at `pose` can see: its field of view as far as the walls."""
@@ -101,16 +59,16 @@ class Map(Canvas):
 
     def robot(self, pose, colour=ROBOT):
         """A robot, and where it looks."""
-        self.dial(self.at([pose[:2]], True)[0], pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
+        self.dial(self._taken([pose[:2]])[0], pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
 
     def starts(self, poses, colour=ROBOT):
         """Many poses, each a little arrow."""
-        for middle, pose in zip(self.at(np.asarray(poses)[:, :2], True), poses, strict=True):
+        for middle, pose in zip(self._taken(np.asarray(poses)[:, :2]), poses, strict=True):
             self.arrow(middle, pose[2], 15, colour)
 
     def path(self, poses, colour=ROBOT):
         """The way along some poses, a dot at each."""
-        points = self.at(np.asarray(poses)[:, :2], True)
+        points = self._taken(np.asarray(poses)[:, :2])
         self.line(points, (*colour, 170), 2)
         for point in points:
             self.disc(point, 3, colour, PAPER)
@@ -121,7 +79,7 @@ class Map(Canvas):
         total = np.cumsum(weight, dtype=float)
         chosen = np.searchsorted(total, (np.arange(n) + 0.5) / n * total[-1])
         dots = np.stack([x, y], 1)[chosen]
-        for dot, tip in zip(self.at(dots, True), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
+        for dot, tip in zip(self._taken(dots), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
             self.line([dot, tip], (*colour, 70))
             self.disc(dot, 1.5, (*colour, 80))
 
@@ -160,13 +118,6 @@ class Map(Canvas):
         for middle, name in self._spots_of_names() if self.named is None else self.named:
             top.text(middle, name, NAME_PX, QUIET, "mm", (*PAPER, 190))
         return Canvas.picture(top)
-
-    def copy(self):
-        """The map as it is now, to draw further on."""
-        twin = copy.copy(self)
-        twin.image = self.image.copy()
-        twin.pen = ImageDraw.Draw(twin.image, "RGBA")
-        return twin
 
     def _floor(self):
         rooms, g = self.world.plan.get("rooms", []), self.grid
@@ -224,17 +175,8 @@ class Map(Canvas):
         return named
 
 
-def colour_of(label, alpha=255):
-    return *PALETTE[label].tolist(), alpha
-
-
 def _ahead(theta):
     return np.stack([np.cos(theta), np.sin(theta)], -1)
-
-
-def text_width(words, size):
-    """Width of a text as it is drawn [px]."""
-    return ImageFont.load_default(SMOOTH * size).getlength(words) / SMOOTH
 
 
 def column_name(ix):
@@ -245,5 +187,3 @@ def row_name(iy):
     return str(iy + 1)
 
 
-def _enlarged(points):
-    return [(SMOOTH * float(x), SMOOTH * float(y)) for x, y in points]

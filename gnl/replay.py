@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
-from . import draw, floor_map
+from . import canvas, draw
 from .camera import render
 from .episode import Senses, run
 from .files import write_whole
+from .floor_map import Map
 from .places import wrap_angle
 from .robot import ACTIONS
 
@@ -77,7 +78,7 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, rules=None):
 
 def frames(looks, world, grid):
     """Pictures of an episode and how long to show each: list of (PIL.Image, seconds)."""
-    home = floor_map.Map(world, *MAP_PX, grid)
+    home = Map(world, *MAP_PX, grid)
     whole = home.copy()
     whole.path([look.pose for look in looks])
     whole.names()
@@ -105,7 +106,7 @@ def gif(shown):
     for i, picture in enumerate(stills):
         wall.paste(picture, (0, i * picture.height))
     # The colours that mean something stay as they are: no other one may be near them.
-    f = floor_map
+    f = canvas
     pale = (draw.PALETTE + 255.0) / 2  # labels under a graph
     clouds = f.PAPER + np.linspace(0.2, 1, 9)[:, None] * np.subtract(f.BELIEF, f.PAPER)  # particles, few to many
     exact = np.array([*draw.PALETTE, *pale, *clouds, *f.TINTS, f.PAPER, f.INK, f.QUIET, f.FAINT, f.ROBOT, f.RIGHT,
@@ -135,8 +136,8 @@ def _panels(look, grid):
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
     """One picture: look t, the robot at `pose`; `action` is the one that the planner has chosen, if it has."""
-    page, look, right = floor_map.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
-    verdict = floor_map.RIGHT if right else floor_map.WRONG
+    page, look, right = canvas.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
+    verdict = canvas.RIGHT if right else canvas.WRONG
     plan = home.copy()
     plan.particles(look.particles)
     plan.place(look.answer, verdict)
@@ -150,7 +151,7 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     page.paste(draw.legend(), 24, 534)
 
     page.text((24, 26), f"look {t + 1} of {len(looks)}", 20)
-    page.text((142, 27), doing, 15, floor_map.ROBOT)
+    page.text((142, 27), doing, 15, canvas.ROBOT)
     x0, x1 = WIDTH_PX - 2 * VIEW_PX - 2 * GAP_PX, WIDTH_PX - VIEW_PX - GAP_PX
     parts = [("the robot sees", x0, 72), ("it recognises", x1, 72), ("this view says", x0, 300),
              ("the filter believes", x1, 300), ("value of next action", x0, 470)]
@@ -168,24 +169,24 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
 def _tick(page, at, right=None):
     """A disc with a tick for a right answer or a cross for a wrong one; pale if there is none yet."""
     lines = {True: [[(-4, 0), (-1, 3), (4, -3)]], False: [[(-3, -3), (3, 3)], [(-3, 3), (3, -3)]], None: []}[right]
-    page.disc(at, 8, {True: floor_map.RIGHT, False: floor_map.WRONG, None: floor_map.FAINT}[right])
+    page.disc(at, 8, {True: canvas.RIGHT, False: canvas.WRONG, None: canvas.FAINT}[right])
     for points in lines:
-        page.line(np.add(points, at), floor_map.PAPER, 2)
+        page.line(np.add(points, at), canvas.PAPER, 2)
 
 
 def _actions(q, chosen, width_px=2 * VIEW_PX + GAP_PX):
     """The values of the actions (A,), if known, as bars from a common zero; the chosen one in orange."""
     left, line_px = 60, draw.LINE_PX
-    page = floor_map.Canvas(width_px, line_px * len(ACTIONS))
+    page = canvas.Canvas(width_px, line_px * len(ACTIONS))
     low, high = (min(0, *q), max(0, *q)) if q is not None else (0, 0)
     scale = (width_px - left - 44) / max(high - low, 1e-9)
     zero = left - low * scale
     for a, name in enumerate(ACTIONS):
-        y, ink = line_px * a + 9, floor_map.ROBOT if a == chosen else floor_map.INK
+        y, ink = line_px * a + 9, canvas.ROBOT if a == chosen else canvas.INK
         page.text((0, y), name, 12, ink)
         if q is not None:
             x0, x1 = sorted((zero, zero + q[a] * scale))
-            page.polygon([(x0, y - 5), (x1, y - 5), (x1, y + 5), (x0, y + 5)], ink if a == chosen else floor_map.BAR)
+            page.polygon([(x0, y - 5), (x1, y - 5), (x1, y + 5), (x0, y + 5)], ink if a == chosen else canvas.BAR)
             page.line([(zero, y - 7), (zero, y + 7)])
             page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
     return page.picture()

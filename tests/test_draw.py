@@ -5,7 +5,7 @@ import pytest
 from conftest import FLAT
 from PIL import Image
 
-from gnl import draw, floor_map
+from gnl import canvas, draw, floor_map
 from gnl.classes import BED, CLASSES, N_CLASSES, PALETTE, SOFA, WALL
 from gnl.places import PlaceGrid
 from gnl.scene_graph import scene_graph
@@ -62,7 +62,7 @@ def test_a_petal_points_to_the_bearings_of_its_place(world, grid):
     plan.belief(np.eye(grid.n_places)[grid.place_of(pose)])
     middle = np.array([3, 1])  # of the cell
     ahead = 0.8 * np.array([np.cos(np.radians(105)), np.sin(np.radians(105))])
-    assert np.abs(np.subtract(colour_at(plan.picture(), plan.at(middle + ahead)), floor_map.BELIEF)).max() < 20
+    assert np.abs(np.subtract(colour_at(plan.picture(), plan.at(middle + ahead)), canvas.BELIEF)).max() < 20
     assert sum(colour_at(plan.picture(), plan.at(middle - ahead))) > 3 * 220
 
 
@@ -129,8 +129,8 @@ def test_a_home_names_the_classes_in_it_and_the_starts(world, grid, legends):
     assert "7" in marks["start"]
     x, y = floor_map.Map(world, 400, grid=grid).at(starts[0, :2]) + 4  # and the margin of the sheet
     disc = np.array(picture)[int(y) - 12:int(y) + 12, int(x) - 12:int(x) + 12]
-    assert count(disc, floor_map.ROBOT) > 60
-    assert count(disc, floor_map.PAPER) > 20
+    assert count(disc, canvas.ROBOT) > 60
+    assert count(disc, canvas.PAPER) > 20
 
 
 @pytest.mark.parametrize(("z0", "height", "pale"), [(0.0, 0.7, False), (0.0, 0.04, True), (2.0, 0.3, True)])
@@ -149,8 +149,8 @@ def test_every_mark_stays_clear_of_its_words(mark):
 
 
 def test_no_letter_is_smaller_than_eleven_pixels(world, grid, monkeypatch):
-    sizes, write = [], floor_map.Canvas.text
-    monkeypatch.setattr(floor_map.Canvas, "text", lambda self, at, words, size=12, *rest, **more: (
+    sizes, write = [], canvas.Canvas.text
+    monkeypatch.setattr(canvas.Canvas, "text", lambda self, at, words, size=12, *rest, **more: (
         sizes.append(size), write(self, at, words, size, *rest, **more))[1])
     pose = np.array([3.0, 2.0, 0.0])
     draw.home(world, 320, grid, [pose], pose)
@@ -166,7 +166,7 @@ def test_names_of_rooms_do_not_touch_one_another(real_home, width):
     plan = floor_map.Map(real_home, width, grid=PlaceGrid(real_home))
     plan.names()
     assert len(plan.named) == len(real_home.plan.get("rooms", [])) or width == 160
-    boxes = [(middle, np.array([floor_map.text_width(name, floor_map.NAME_PX), floor_map.NAME_PX]) / 2)
+    boxes = [(middle, np.array([canvas.text_width(name, floor_map.NAME_PX), floor_map.NAME_PX]) / 2)
              for middle, name in plan.named]
     for i, (middle, half) in enumerate(boxes):
         for other, its_half in boxes[:i]:
@@ -179,7 +179,7 @@ def test_names_of_rooms_that_lie_open_to_one_another_keep_to_their_rooms():
     plan.names()
     rooms = {room["type"]: plan.at(room["polygon"]) for room in flat.plan["rooms"]}
     for middle, name in plan.named:
-        half = floor_map.text_width(name, floor_map.NAME_PX) / 2
+        half = canvas.text_width(name, floor_map.NAME_PX) / 2
         assert rooms[name][:, 0].min() < middle[0] - half
         assert rooms[name][:, 0].max() > middle[0] + half
 
@@ -196,28 +196,28 @@ def test_names_of_rooms_keep_away_from_what_is_drawn(world, draw_at):
     assert plan.named[0][0] is before  # settled is settled
     plan.names()
     (after, _), = plan.named
-    assert (abs(after - before) > [floor_map.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2]).any()
+    assert (abs(after - before) > [canvas.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2]).any()
 
 
 def test_names_of_rooms_stand_above_all_that_is_drawn(world):
     plan = floor_map.Map(world, 640)
     plan.names()
     (middle, name), = plan.named
-    plan.box(0, 0, plan.width, plan.height, floor_map.ROBOT)
-    half = floor_map.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2
+    plan.box(0, 0, plan.width, plan.height, canvas.ROBOT)
+    half = canvas.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2
     picture = plan.picture().crop((*(middle - half), *(middle + half)))
-    assert (np.array(picture) == floor_map.ROBOT).all(2).mean() < 0.5  # the rest is letters, and light around them
+    assert (np.array(picture) == canvas.ROBOT).all(2).mean() < 0.5  # the rest is letters, and light around them
     assert plan.picture() == plan.picture()
 
 
 def test_a_wall_stands_in_the_strip_at_its_distance(world):
     dense = [part[0] for part in cast(world, np.array([[3.0, 2.0, 0.0]])).dense()]  # the wall is 2.95 m ahead
     column = np.array(draw.strip(world, dense, 400, 400))[24:424, 30 + 200]  # 400 rows for 4 m
-    assert (column[400 - 294:] == floor_map.PAPER).all()
+    assert (column[400 - 294:] == canvas.PAPER).all()
     assert (column[400 - 304:400 - 296] == PALETTE[WALL]).all()
     behind = column[:400 - 306]
-    assert ((behind == floor_map.FAINT) | (behind == floor_map.PAPER)).all()
-    assert 100 < count(behind, floor_map.FAINT) * 7 / 3 + 10 > count(behind, floor_map.PAPER)
+    assert ((behind == canvas.FAINT) | (behind == canvas.PAPER)).all()
+    assert 100 < count(behind, canvas.FAINT) * 7 / 3 + 10 > count(behind, canvas.PAPER)
 
 
 def test_a_graph_of_no_node_is_a_pale_picture():
@@ -253,11 +253,11 @@ def test_words_of_nodes_at_one_spot_do_not_cover_each_other():
 def test_the_true_place_is_green_wherever_it_ranks(grid, rank):
     values = 1 / np.arange(1, grid.n_places + 1)
     picture = np.array(draw.ranks(grid, values, rank - 1, n=5))
-    green = (picture == floor_map.RIGHT).all(-1).any(1)
+    green = (picture == canvas.RIGHT).all(-1).any(1)
     row = min(rank, 5)  # below the heads
-    assert green[row * floor_map.LINE_PX:(row + 1) * floor_map.LINE_PX].any()
-    assert not green[:row * floor_map.LINE_PX].any()
-    assert not green[(row + 1) * floor_map.LINE_PX:].any()
+    assert green[row * canvas.LINE_PX:(row + 1) * canvas.LINE_PX].any()
+    assert not green[:row * canvas.LINE_PX].any()
+    assert not green[(row + 1) * canvas.LINE_PX:].any()
 
 
 def test_pictures_of_a_sheet_do_not_cover_each_other():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gnl import draw, episode, floor_map, planners, replay, segnet
+from gnl import canvas, draw, episode, planners, replay, segnet
 from gnl.gcn import GCN
 from gnl.nnql import NNQL
 from gnl.places import PlaceGrid
@@ -71,7 +71,7 @@ def test_a_frame_for_each_look_each_decision_and_some_between(parts, looks, tmp_
         assert film.info["loop"] == 0  # for ever
         assert film.info["duration"] == 1600
         page = np.array(film.convert("RGB"))
-    for colour in (floor_map.PAPER, draw.PALETTE[3], floor_map.ROBOT, floor_map.BELIEF):
+    for colour in (canvas.PAPER, draw.PALETTE[3], canvas.ROBOT, canvas.BELIEF):
         assert (page == colour).all(-1).any(), colour
 
 
@@ -80,20 +80,20 @@ def test_right_answers_are_green_and_wrong_ones_red(parts, looks):
     pictures = [np.array(picture) for picture, seconds in replay.frames(looks[:1], world, grid)]
     dot = pictures[0][18:35, 804:821]
     right = looks[0].answer == looks[0].place
-    assert (dot == (floor_map.RIGHT if right else floor_map.WRONG)).all(-1).sum() > 100
-    assert (dot[4:12, 4:12] == floor_map.PAPER).all(-1).any()  # a tick or a cross, for eyes that see no red
+    assert (dot == (canvas.RIGHT if right else canvas.WRONG)).all(-1).sum() > 100
+    assert (dot[4:12, 4:12] == canvas.PAPER).all(-1).any()  # a tick or a cross, for eyes that see no red
 
 
 def test_no_letter_of_a_frame_is_smaller_than_eleven_pixels_or_cut_off(parts, looks, monkeypatch):
     _, grid, *_ = parts
-    written, text = [], floor_map.Canvas.text
+    written, text = [], canvas.Canvas.text
 
-    def note(page, at, words, size=12, colour=floor_map.INK, anchor="lm", halo=None):
-        left = at[0] - {"l": 0, "m": 0.5, "r": 1}[anchor[0]] * floor_map.text_width(words, size)
-        written.append((size, left, left + floor_map.text_width(words, size) - page.width))
+    def note(page, at, words, size=12, colour=canvas.INK, anchor="lm", halo=None):
+        left = at[0] - {"l": 0, "m": 0.5, "r": 1}[anchor[0]] * canvas.text_width(words, size)
+        written.append((size, left, left + canvas.text_width(words, size) - page.width))
         text(page, at, words, size, colour, anchor, halo)
 
-    monkeypatch.setattr(floor_map.Canvas, "text", note)
+    monkeypatch.setattr(canvas.Canvas, "text", note)
     replay.frames(looks, parts[0], grid)
     smallest, left, _ = np.min(written, 0)
     assert smallest >= 11
@@ -103,8 +103,8 @@ def test_no_letter_of_a_frame_is_smaller_than_eleven_pixels_or_cut_off(parts, lo
 
 def test_names_of_rooms_do_not_move_from_frame_to_frame(looks, monkeypatch):
     rooms = [{"type": "bedroom", "polygon": [[0, 0], [6, 0], [6, 4], [0, 4]]}]
-    world, spots, text = World({**PLAN, "rooms": rooms}), set(), floor_map.Canvas.text
-    monkeypatch.setattr(floor_map.Canvas, "text", lambda page, at, words, *how, **more: (
+    world, spots, text = World({**PLAN, "rooms": rooms}), set(), canvas.Canvas.text
+    monkeypatch.setattr(canvas.Canvas, "text", lambda page, at, words, *how, **more: (
         spots.add(tuple(at)) if words == "bedroom" else None, text(page, at, words, *how, **more)))
     replay.frames(looks, world, PlaceGrid(world))
     assert len(spots) == 1
@@ -113,7 +113,7 @@ def test_names_of_rooms_do_not_move_from_frame_to_frame(looks, monkeypatch):
 def test_a_tick_is_no_cross_and_what_is_to_come_is_neither():
     pages = []
     for known in ([True], [False], []):
-        pages.append(floor_map.Canvas(20, 20))
+        pages.append(canvas.Canvas(20, 20))
         replay._tick(pages[-1], (10, 10), *known)
     shapes = [(np.array(page.picture()) > 240).all(-1) for page in pages]
     assert not (shapes[0] == shapes[1]).all()

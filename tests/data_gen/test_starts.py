@@ -7,8 +7,8 @@ from scipy import stats
 from data_gen import starts as starts_module
 from data_gen.rooms import make_home
 from data_gen.starts import beyond_gap, draw_starts, starts_of, training_starts
+from gnl.canvas import BELIEF, ROBOT
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
-from gnl.floor_map import BELIEF, ROBOT
 from gnl.places import wrap_angle
 from gnl.world import World
 from tests.conftest import room
