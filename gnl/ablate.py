@@ -23,7 +23,7 @@ from .outcomes import arrays, outcomes
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, collect, executor, finished, path_of, prepare, starts_of
+from .table import Settings, agree, executor, finished, path_of, prepare, run_jobs, starts_of
 from .terminal import Stage
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
@@ -54,12 +54,10 @@ def run(args):
     todo = {name: job for name, job in jobs.items() if not finished(out, name)}
     if todo:
         with executor(args.jobs) as pool:
-            senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
+            senses = prepare(out, SETTINGS, CELLS, args.jobs, pool)
             stage = Stage("ablate")
-            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in CELLS}
-            running = {pool.submit(measure, choice, cell, senses[cell.world], starts[cell]): name
-                       for name, (choice, cell) in todo.items()}
-            collect(out, running, SETTINGS.episodes, stage)
+            run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_arrays(starts_of(out, cell))[0])
+                           for name, (choice, cell) in todo.items()}, SETTINGS.episodes, pool, stage)
             stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
     measured = effects(out, chosen)
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))

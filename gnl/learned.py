@@ -6,7 +6,7 @@ settings make another file and never a wrong answer.
 
 import hashlib
 import json
-from concurrent.futures import as_completed
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -74,18 +74,18 @@ def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stag
 
 
 def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
-    """The same for a dict of Senses, each in a process of the executor `pool`: yields (key, GCN) as they are there."""
-    settings = {key: {**settings, "plan": digest(one.world.plan), "views": n_views, "seed": seed, **how}
-                for key, one in senses.items()}
-    paths = {key: path_of(folder, "gcn", of_key) for key, of_key in settings.items()}
-    learning = {pool.submit(learn_places, senses[key], PlaceGrid(senses[key].world), n_views, seed, **how): key
-                for key, path in paths.items() if not path.exists()}
-    for key in (key for key in senses if key not in learning.values()):
-        yield key, gcn.GCN.load(paths[key])[0]
-    for future in as_completed(learning):
-        key, network = learning[future], future.result()
-        network.save(paths[key], settings[key])
-        yield key, network
+    """The same for several worlds at once, each in a process of the executor `pool`: dicts of Senses -> of GCN."""
+    settings = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
+                for world, of_world in senses.items()}
+    learning = {world: pool.submit(learn_places, of_world, PlaceGrid(of_world.world), n_views, seed, **how)
+                for world, of_world in senses.items() if not path_of(folder, "gcn", settings[world]).exists()}
+
+    def learn(world, path):
+        network = learning[world].result()
+        network.save(path, settings[world])
+        return network
+
+    return {world: kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world)) for world in senses}
 
 
 def learn_places(senses, grid, n_views, seed, helper=None, stage=None, **how):

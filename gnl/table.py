@@ -67,36 +67,31 @@ def run(args):
     todo = [cell for cell in cells if not finished(out, cell.name)]
     if todo:
         with executor(args.jobs, args.dask) as pool:
-            running = {}
-            for world, senses in prepare(out, settings, todo, args.jobs, pool):  # where one is ready, its cells begin
-                for cell in (cell for cell in todo if cell.world == world):
-                    starts, _ = load_arrays(starts_of(out, cell))
-                    running[pool.submit(run_cell, cell, senses, starts, asdict(settings))] = cell.name
+            senses = prepare(out, settings, todo, args.jobs, pool)
             stage = Stage("table")
-            collect(out, running, settings.episodes, stage)
+            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in todo}
+            jobs = {cell.name: (run_cell, cell, senses[cell.world], starts[cell], asdict(settings)) for cell in todo}
+            run_jobs(out, jobs, settings.episodes, pool, stage)
             stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
 
 
-def collect(out, running, n_episodes, stage):
-    """Write outcomes and costs of jobs {future: name} as they come."""
-    waiting = set(running)
+def run_jobs(out, jobs, n_episodes, pool, stage):
+    """Hand jobs {name: (function, *arguments)} to the processes, and write each's outcomes and costs as they come."""
+    waiting = {pool.submit(*job): name for name, job in jobs.items()}
     while waiting:
-        ready, waiting = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
+        ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
         for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
-            name, (result, costs) = running[future], future.result()
+            name, (result, costs) = waiting.pop(future), future.result()
             write_whole(out / "costs" / f"{name}.json", to_bytes(costs))
             write_whole(path_of(out, name), to_bytes(result))
-        done = len(running) - len(waiting)
+        done = len(jobs) - len(waiting)
         rate = done * n_episodes / stage.seconds
-        stage(done / len(running), f"{done} of {len(running)} cells, {rate:.0f} episodes/s")
+        stage(done / len(jobs), f"{done} of {len(jobs)} cells, {rate:.0f} episodes/s")
 
 
 def prepare(out, settings, cells, jobs, pool):
-    """What cells share: homes and starts, drawn by a program of their own, and the net; yields (world, Senses).
-
-    A world comes as soon as its GCN is learnt.
-    """
+    """What the cells share: homes and starts, drawn by a program of their own, the net, and a GCN for each world."""
     data, worlds = out / "data", sorted({cell.world for cell in cells})
     views, homes = data / "views.npz", {world: data / f"home-{world}.json" for world in worlds}
     programs = [] if views.exists() else [["views", views, "--homes", settings.net_homes, "--views",
@@ -121,10 +116,11 @@ def prepare(out, settings, cells, jobs, pool):
     senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
     made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
-    for world, classifier in learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool,
-                                                       **how):
-        yield world, replace(senses[world], gcn=classifier)
+    classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
+    for world, classifier in classifiers.items():
+        senses[world].gcn = classifier
     stage.done(f"places of {len(worlds)} homes, {settings.gcn_views} views of each")
+    return senses
 
 
 def check(args):

@@ -186,18 +186,13 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
     asked, page = [], tmp_path / "page.md"
     page.write_text("| open | effect |\n| edges | ? |\n| neighbours | ? |\n")
 
-    def submit(function, choice, cell, *_):
-        assert function is ablate.measure
-        asked.append((choice, cell))
-        return len(asked)
-
-    def collect(out, running, *_):
-        assert list(running.values()) == [ablate.name_of(choice, cell) for choice, cell in asked]
+    def run_jobs(out, jobs, *_):
+        asked.extend((choice, cell) for _, choice, cell, *_ in jobs.values())
+        assert list(jobs) == [ablate.name_of(choice, cell) for choice, cell in asked]
         write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
-    pool = SimpleNamespace(submit=submit)
     for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_arrays", lambda _: [None]),
-                        ("executor", lambda _: contextlib.nullcontext(pool)), ("collect", collect)):
+                        ("executor", contextlib.nullcontext), ("run_jobs", run_jobs)):
         monkeypatch.setattr(ablate, name, value)
     for _ in range(2):  # the second one has nothing to do
         with pytest.raises(SystemExit) as exit:
