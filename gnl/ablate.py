@@ -16,7 +16,7 @@ import numpy as np
 
 from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
-from .compare import paired_difference
+from .compare import in_points, paired_difference
 from .experiment import Cell, costs, now
 from .files import load_arrays, write_whole
 from .outcomes import arrays, outcomes
@@ -117,11 +117,10 @@ def effects(out, chosen):
         row = [choice.point, choice.other, beside.other]
         for method in ("MV", "Ours"):
             here, there = right(choice, method), right(beside, method)
-            d, low, high = (100 * value for value in paired_difference(here, there))
             if choice is OURS:
                 row.append(f"{100 * here.mean():.1f}")
             else:
-                row.append("0" if np.array_equal(here, there) else f"{d:+.1f} [{low:+.1f}, {high:+.1f}]")
+                row.append("0" if np.array_equal(here, there) else in_points(*paired_difference(here, there)))
         rows.append(row)
     return rows
 

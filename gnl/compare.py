@@ -53,3 +53,8 @@ def episodes_needed(difference, std):
     std : standard deviation of d over pairs; of two unpaired methods of p and q right sqrt(p (1 - p) + q (1 - q))
     """
     return int(np.ceil(((Z95 + Z80) * std / difference) ** 2))
+
+
+def in_points(mean, low, high):
+    """A difference of shares and its interval as words, in percentage points: +1.0 [-0.2, +2.2]."""
+    return f"{100 * mean:+.1f} [{100 * low:+.1f}, {100 * high:+.1f}]"

@@ -88,7 +88,7 @@ def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
     return {world: kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world)) for world in senses}
 
 
-def learn_places(senses, grid, n_views, seed, helper=None, stage=None, **how):
+def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, **how):
     """GCN trained on views from random free poses; half of them are seen by the `helper`, if there is one."""
     rng = np.random.default_rng(seed)
     poses = senses.world.free_poses(n_views, rng)
@@ -96,10 +96,20 @@ def learn_places(senses, grid, n_views, seed, helper=None, stage=None, **how):
     theirs = helper and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
     graphs = senses.look_around(poses[:half], rng, stage and (lambda share: stage(0.5 * share, "looking around")))
     graphs = join([graphs, theirs.result()]) if theirs else graphs
-    network = gcn.GCN(grid.n_places, rng)
+    network = gcn.GCN(grid.n_places, rng, dtype=dtype)
     gcn.train(network, graphs, grid.place_of(poses), rng, **how,
               progress=stage and (lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}")))
     return network
+
+
+def quick_senses(world, n_views=2000, seed=0):
+    """Senses to try things with: true labels, no noise, and a GCN that has learned the places in seconds.
+
+    It learns in 64 bits, so that rounding decides nothing.
+    """
+    senses = episode.Senses(world, None, None, noise=0)
+    senses.gcn = learn_places(senses, PlaceGrid(world), n_views, seed, dtype=float, epochs=10, batch=64, rate=0.01)
+    return senses
 
 
 def q_values(folder, senses, robot, grid, n_episodes, seed, settings, stage):

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from . import draw, draw_charts
-from .compare import episodes_needed, mcnemar, over_cells
+from .compare import episodes_needed, in_points, mcnemar, over_cells
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS
 from .files import load_json, write_whole
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
@@ -109,8 +109,7 @@ def percent(values):
 
 def interval(differences):
     """Mean over cells in points and its interval, as words."""
-    mean, low, high = (100 * value for value in over_cells(differences, np.random.default_rng(0)))
-    return f"{mean:+.1f}", f"[{low:+.1f}, {high:+.1f}]"
+    return in_points(*over_cells(differences, np.random.default_rng(0)))
 
 
 def means(results, methods):
@@ -146,18 +145,18 @@ def differences(results, methods):
     for a, b in pairs_of(methods):
         d = {world: gains(group, a, b) for world, group in worlds.items()}
         every = [np.concatenate([right(result)[name] for result in results]) for name in (a, b)]
-        rows.append([f"{a} - {b}", *interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
-                     *(" ".join(interval(of_world)) for of_world in d.values())])
+        rows.append([f"{a} - {b}", interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
+                     *(interval(of_world) for of_world in d.values())])
     return ("McNemar's p takes the episodes of a cell as independent, and is too small.\n\n"
-            + markdown(["", "points", "interval", "McNemar p", *(f"home {world}" for world in worlds)], rows))
+            + markdown(["", "points", "McNemar p", *(f"home {world}" for world in worlds)], rows))
 
 
 def papers_differences():
     """The same of the paper's 75 cells, whose episodes are not known: only cells can be drawn again."""
     cells = table_1().values()
-    rows = [[f"{a} - {b}", *interval([(cell[a] - cell[b]) / 100 for cell in cells])]
+    rows = [[f"{a} - {b}", interval([(cell[a] - cell[b]) / 100 for cell in cells])]
             for a, b in (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"))]
-    return markdown(["", "points", "interval"], rows)
+    return markdown(["", "points"], rows)
 
 
 def power(results, methods):
@@ -182,7 +181,7 @@ def locations(results, methods):
 def by_heart(results):
     """Ours beside chance and the best fixed sequence, from the tests and from starts that it was trained on."""
     pairs = [(other, of) for other in ("MV", "Scan") for of in (right, from_training)]
-    rows = [[name, *(" ".join(interval(gains(group, "Ours", other, of))) for other, of in pairs)]
+    rows = [[name, *(interval(gains(group, "Ours", other, of)) for other, of in pairs)]
             for name, group in groups(results, T_XY)]
     heads = [f"Ours - {other}, {'tests' if of is right else 'training starts'}" for other, of in pairs]
     return ("From the tests, and from as many of the starts of its own training, with new luck.\n\n"
@@ -197,9 +196,9 @@ def adaptation(results):
             ["best on the tests", *np.bincount(best, minlength=len(results[0]["checkpoints"]))]]
     gain = gains(results, "DA", "Ours")
     early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
-    text = f"DA - Ours {' '.join(interval(gain))}"
+    text = f"DA - Ours {interval(gain)}"
     if early:
-        text += f"; where one of the first five was chosen ({len(early)} cells) {' '.join(interval(early))}"
+        text += f"; where one of the first five was chosen ({len(early)} cells) {interval(early)}"
     text += ". The best of ten equal ones looks better than they are: part of what Oracle gains is luck"
     return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
 

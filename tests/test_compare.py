@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from gnl.compare import episodes_needed, mcnemar, over_cells, paired_difference
+from gnl.compare import episodes_needed, in_points, mcnemar, over_cells, paired_difference
 from gnl.paper import METHODS, WORLDS, table_1
 
 
@@ -141,3 +141,7 @@ def test_the_papers_table_is_the_one_beside_the_project_where_it_is():
         world, t_xy_m, t_theta_deg, *numbers = row.split(",")
         found = cells[int(world[:5]), float(t_xy_m), int(t_theta_deg)]
         assert [found[name] for name in METHODS] == [float(number) for number in numbers]
+
+
+def test_a_difference_is_told_in_points_with_signs():
+    assert in_points(0.0125, -0.0034, 0.12) == "+1.2 [-0.3, +12.0]"

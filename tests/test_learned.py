@@ -181,6 +181,17 @@ def test_what_is_seen_from_a_pose_is_learnt_as_the_place_of_that_pose(parts, mon
     assert helper.given == helped
 
 
+def test_quick_senses_look_by_true_labels_and_know_their_home_in_64_bits(parts):
+    world = parts[0].world
+    senses, others = learned.quick_senses(world, 300), learned.quick_senses(world, 300, seed=1)
+    assert (senses.world, senses.net, senses.noise) == (world, None, 0)
+    assert {p.dtype for p in senses.gcn.params.values()} == {np.dtype(float)}
+    grid, poses = PlaceGrid(world), world.free_poses(300, np.random.default_rng(0))  # those that it learned from
+    right, of_others = ((one.scores(poses, np.random.default_rng(2)).argmax(1) == grid.place_of(poses)).mean()
+                        for one in (senses, others))
+    assert right > 0.5 > of_others
+
+
 def test_a_store_of_another_seed_learns_from_other_starts(parts, tmp_path, monkeypatch):
     senses, grid, _ = parts
     starts = []
