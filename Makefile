@@ -18,7 +18,7 @@ HOUSE ?= 800
 ALIASING ?= 0.3
 PLAN ?=
 ARGS ?=
-TABLE ?= out/table
+TABLE ?= $(if $(findstring --quick,$(ARGS)),out/table-quick,out/table)
 CHAPTERS ?=
 VIEWS := out/data/views-$(NOISE).npz
 HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
@@ -33,7 +33,7 @@ help:
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"
 	@echo "make table   the paper's experiment at full scale, then its report (out/table; most of an hour)"
-	@echo "             ARGS='--quick' a small slice in a minute; more with  $(RUN) -m gnl table --help"
+	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); more with  $(RUN) -m gnl table --help"
 	@echo "make tutorials   run every chapter and render its figures anew; CHAPTERS='04 07' some of them"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"
 	@echo "make clean   remove .venv and out"

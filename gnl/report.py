@@ -123,7 +123,8 @@ def means(results, methods):
             row.append(percent([right(result)[method].mean() for result in group])
                        + (f" ({np.mean(theirs):.1f})" if theirs else ""))
         rows.append(row)
-    return "The paper's means of the same cells in brackets.\n\n" + markdown(["", *methods], rows)
+    return ("The paper's means of the same cells in brackets. Oracle is Ours at the checkpoint that is best on the "
+            "tests themselves.\n\n" + markdown(["", *methods], rows))
 
 
 def methods_of(results):

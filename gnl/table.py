@@ -119,7 +119,7 @@ def prepare(out, settings, cells, jobs, pool):
     classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
     for world, classifier in classifiers.items():
         senses[world].gcn = classifier
-    stage.done(f"places of {len(worlds)} homes, {settings.gcn_views} views of each")
+    stage.done(f"places of {len(worlds)} home{'s' * (len(worlds) > 1)}, {settings.gcn_views} views of each")
     return senses
 
 
@@ -163,7 +163,7 @@ def agree(path, settings):
         for name, value in settings.items():
             if there.get(name) != value:
                 raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
-                                 "name another folder with --out")
+                                 "name another folder with --out (make table TABLE=...)")
     write_whole(path, to_bytes(settings))
 
 
