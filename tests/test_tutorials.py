@@ -90,6 +90,19 @@ def test_a_chapter_runs_says_what_it_prints_and_draws_its_figures(chapter, tmp_p
         assert abs(difference).mean() < 1, f"{name} is no longer what the chapter draws"
 
 
+@pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda path: path.stem)
+def test_a_chapter_is_of_readable_size_and_has_two_to_three_characters_of_prose_to_one_of_code(chapter):
+    """The code of pictures, which is folded, counts for neither."""
+    text = chapter.read_text()
+    assert 600 <= len(re.sub(r"```.*?```", "", text, flags=re.DOTALL).split()) <= 1500
+    assert max(len(line) for fence in runner.FENCE.finditer(text) for line in fence[2].splitlines()
+               if fence[1] in ("python", "text")) <= 97  # a page of GitHub shows no more without a scroll bar
+    shown = re.sub(r"<details><summary>Code of the pictures?</summary>.*?</details>", "", text, flags=re.DOTALL)
+    code = sum(len(fence[2]) for fence in runner.FENCE.finditer(shown) if fence[1] == "python")
+    said = runner.FENCE.sub(lambda fence: "" if fence[1] in ("python", "text") else fence[0], shown)
+    assert 2 <= len(said) / code <= 3
+
+
 @pytest.mark.parametrize("exercises", EXERCISES, ids=number)
 def test_the_solutions_are_right(exercises):
     tasks, solutions = load(exercises).TASKS, load(TUTORIALS / "solutions" / f"sol_{number(exercises)}.py")
