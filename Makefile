@@ -33,7 +33,7 @@ help:
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"
 	@echo "make table   the paper's experiment at full scale, then its report (out/table; most of an hour)"
-	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); more with  $(RUN) -m gnl table --help"
+	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); TABLE=folder; more with  $(RUN) -m gnl table --help"
 	@echo "make tutorials   run every chapter and render its figures anew; CHAPTERS='04 07' some of them"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"
 	@echo "make clean   remove .venv and out"
@@ -45,6 +45,7 @@ demo: .venv/ready
 	    --pictures "out/demo$(if $(PLAN),-$$(basename "$(PLAN)" .json))" $(ARGS)
 
 table: .venv/ready
+	@$(if $(findstring --out,$(ARGS)),$(error ARGS: expected no --out, found "$(ARGS)"; name the folder with TABLE=))
 	@$(RUN) -m gnl table --out "$(TABLE)" $(ARGS)
 	@$(RUN) -m gnl report --out "$(TABLE)"
 

@@ -53,7 +53,7 @@ def home(world, width_px=640, grid=None, starts=(), shown=None):
     if shown is not None:
         plan.sight(shown)
         plan.robot(shown)
-        marks |= {"robot": "where the other pictures are taken", "sight": "what is seen from there"}
+        marks |= {"robot": "a robot", "sight": "what it sees in the next pictures"}
     if plan.pale.any():
         marks["pale"] = "pale: hangs overhead or lies flat"
     keys = [legend(np.unique(world.label))] + ([legend([], marks)] if marks else [])

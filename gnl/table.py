@@ -163,7 +163,7 @@ def agree(path, settings):
         for name, value in settings.items():
             if there.get(name) != value:
                 raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
-                                 "name another folder with --out (make table TABLE=...)")
+                                 "name another folder with --out")
     write_whole(path, to_bytes(settings))
 
 

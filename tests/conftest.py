@@ -1,7 +1,9 @@
-"""Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones that are there."""
+"""Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones; what make begins."""
 
+import ast
 import copy
 import functools
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -97,6 +99,14 @@ def strewn(request):
 def real_home_path(request):
     """The flat that comes with gnl, and the homes beside the project where they are."""
     return request.param
+
+
+def begun_by_make(*words):
+    """The arguments of each program that `make` would begin with these words."""
+    instead = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
+    made = subprocess.run(["make", "--no-print-directory", "-o", ".venv/ready", instead, *words], capture_output=True,
+                          text=True, check=True, cwd=Path(data_gen.__file__).parents[1])
+    return [ast.literal_eval(line) for line in made.stdout.splitlines()]
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,5 @@
 """The demonstration at the smallest scale: it runs, again in less time, after Ctrl-C and after a kill."""
 
-import ast
 import contextlib
 import io
 import os
@@ -9,20 +8,18 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import FLAT, begun_by_make
 from PIL import Image
 
-import data_gen
 from data_gen.__main__ import main as draw_data
 from gnl import demo
 from gnl.__main__ import main
 from gnl.files import load_arrays, save_arrays
 
-FLAT = Path(data_gen.__file__).parent / "homes" / "flat.json"
 SMALLEST = [f"--{name}={n}" for name, n in {"net-epochs": 1, "gcn-views": 128, "gcn-epochs": 2, "gcn-batch": 32,
                                             "episodes": 64, "scan-starts": 2, "tests": 4}.items()]
 PICTURES = {"1-home.png", "2-view.png", "3-labels.png", "4-strip.png", "5-graph.png", "6-ranks.png", "episode.gif"}
@@ -180,10 +177,7 @@ def test_the_pictures_go_where_they_are_told_to(runs):
 @pytest.mark.parametrize(("plan", "folder"), [("", "out/demo"), ("a/flat.json", "out/demo-flat"),
                                               ("/my homes/the old, flat.v2.json", "out/demo-the old, flat.v2")])
 def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
-    words = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
-    command = ["make", "--no-print-directory", "-o", ".venv/ready", words, f"PLAN={plan}", "ARGS=--tests 3", "demo"]
-    made = subprocess.run(command, cwd=Path(demo.__file__).parents[1], capture_output=True, text=True, check=True)
-    last = ast.literal_eval(made.stdout.splitlines()[-1])
+    last = begun_by_make(f"PLAN={plan}", "ARGS=--tests 3", "demo")[-1]
     assert last[last.index("--pictures") + 1] == folder
     assert last[last.index("--plan") + 1] == plan or not plan
     assert last[-2:] == ["--tests", "3"]

@@ -1,6 +1,5 @@
 """The table at its smallest: the same bytes with one process, with two, after kills, on a cluster; and its refusals."""
 
-import ast
 import json
 import os
 import shutil
@@ -8,10 +7,10 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from conftest import begun_by_make
 
 from gnl import table
 from gnl.__main__ import main
@@ -220,13 +219,14 @@ def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys
 @pytest.mark.parametrize(("words", "folder"), [([], "out/table"), (["ARGS=--quick"], "out/table-quick"),
                                                (["ARGS=--quick", "TABLE=out/mine"], "out/mine")])
 def test_make_keeps_a_quick_table_apart_from_the_whole_and_reports_on_what_it_made(words, folder):
-    program = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
-    command = ["make", "--no-print-directory", "-o", ".venv/ready", program, *words, "table"]
-    made = subprocess.run(command, cwd=Path(table.__file__).parents[1], capture_output=True, text=True, check=True)
-    begun = [ast.literal_eval(line) for line in made.stdout.splitlines()]
-    assert [argv[1] for argv in begun] == ["gnl", "gnl"]
-    assert [argv[2] for argv in begun] == ["table", "report"]
-    assert [argv[argv.index("--out") + 1] for argv in begun] == [folder] * 2
+    begun = begun_by_make(*words, "table")
+    assert [argv[:5] for argv in begun] == [["-m", "gnl", command, "--out", folder] for command in ("table", "report")]
+
+
+def test_make_table_takes_its_folder_from_one_place_alone():
+    with pytest.raises(subprocess.CalledProcessError) as error:
+        begun_by_make("ARGS=--quick --out here", "table")
+    assert 'ARGS: expected no --out, found "--quick --out here"; name the folder with TABLE=' in error.value.stderr
 
 
 def test_the_whole_table_is_75_cells_and_repeats_multiply_it():
