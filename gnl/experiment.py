@@ -64,6 +64,7 @@ def run_cell(cell, senses, starts, settings=None):
     lived = Experience()
     store = episode.train_nnql(senses, robot, grid, training, learning,
                                checkpoint_every=len(training) // N_CHECKPOINTS, watch=lived.watch)
+    of_training = {"seconds": time.time() - began[0], "views": senses.views}
     sequences, worth = episode.race(senses, robot, grid, training[:RACE_STARTS], racing)
     options = senses.timed("options", Options, lived, sequences, worth)
 
@@ -82,7 +83,7 @@ def run_cell(cell, senses, starts, settings=None):
               "sequence": sequences[0].tolist(), "tests": tests, "from training starts": by_heart,
               "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
               "validation": [test(plan, starts["validation"], validating) for plan in past]}
-    return result, costs(senses, began, sum(map(len, store.values)))
+    return result, {**costs(senses, began, sum(map(len, store.values))), "of training": of_training}
 
 
 def now():

@@ -34,9 +34,13 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)
     degree = np.bincount(rows, minlength=n_nodes)
     scale = (1 / np.sqrt(degree)).astype(dtype)
-    ends = np.zeros(n_nodes + 1, np.int32)  # of int64, scipy would look through them all to make them int32
-    np.cumsum(degree, out=ends[1:])
-    return csr_matrix((scale[rows] * scale[columns], columns.astype(np.int32), ends), (n_nodes, n_nodes))
+    return sparse(scale[rows] * scale[columns], columns, np.append(0, degree.cumsum()), n_nodes)
+
+
+def sparse(values, columns, starts, n_columns):
+    """A sparse matrix by rows: row i holds values[starts[i]:starts[i + 1]] in those columns (CSR)."""
+    # As int32: through longer numbers scipy would look every time, to see whether these would do.
+    return csr_matrix((values, columns.astype(np.int32), starts.astype(np.int32)), (len(starts) - 1, n_columns))
 
 
 def graph_convolution_forward(node_features, adjacency, weight, bias):
@@ -59,11 +63,9 @@ def graph_convolution_backward(dout, cache):
 
 def mean_forward(node_features, starts):
     """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero."""
-    count = np.diff(starts)
-    some = np.flatnonzero(count)
-    out = np.zeros((len(count), node_features.shape[1]), node_features.dtype)
-    out[some] = np.add.reduceat(node_features, starts[some]) / count[some, None].astype(out.dtype)
-    return out, (count,)
+    H, count = node_features, np.diff(starts)
+    nodes_of = sparse(np.ones(len(H), H.dtype), np.arange(len(H)), starts, len(H))
+    return nodes_of @ H / count.clip(1)[:, None].astype(H.dtype), (count,)
 
 
 def mean_backward(dout, cache):
@@ -74,12 +76,8 @@ def mean_backward(dout, cache):
 
 def lookup_backward(dout, words, n_words):
     """X^T dout for one-hot X: each word gathers the gradients of its nodes, (N, F) -> (n_words, F)."""
-    order = np.argsort(words, kind="stable")
-    count = np.bincount(words, minlength=n_words)
-    present = np.flatnonzero(count)
-    dW = np.zeros((n_words, dout.shape[1]), dout.dtype)
-    dW[present] = np.add.reduceat(dout.take(order, 0), (count.cumsum() - count)[present]) if len(words) else 0
-    return dW
+    nodes, count = np.argsort(words, kind="stable"), np.bincount(words, minlength=n_words)
+    return sparse(np.ones(len(words), dout.dtype), nodes, np.append(0, count.cumsum()), len(words)) @ dout
 
 
 class GCN:

@@ -6,6 +6,8 @@
     B batch   H x W image, row 0 on top   C channels in   F channels out   K classes
 """
 
+import math
+
 import numpy as np
 
 
@@ -22,10 +24,10 @@ def conv_forward(x, w, b):
     # The three pixels of a patch's row lie side by side: copied as one piece, an item of 3 C numbers.
     s0, s1, s2, s3 = padded.strides
     rows = np.ndarray((B, H, W, 3), f"V{3 * C * s3}", padded, strides=(s0, s1, s2, s1))
-    patches = rows.copy().view(x.dtype).reshape(B * H * W, 9 * C)
-    out = patches @ w.reshape(9 * C, -1)
+    patches = rows.copy().view(x.dtype).reshape(B, H * W, 9 * C)
+    out = patches @ w.reshape(9 * C, -1)  # a product for each image: a small one stays near the processor
     out += b
-    return out.reshape(B, H, W, -1), (patches, w)
+    return out.reshape(B, H, W, -1), (patches.reshape(B * H * W, 9 * C), w)
 
 
 def conv_backward(dout, cache):
@@ -38,7 +40,7 @@ def conv_backward(dout, cache):
 
 def linear_forward(x, w, b=None):
     """The same linear map at every pixel (a 1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F)."""
-    out = x.reshape(-1, w.shape[0]) @ w  # one product for all pixels, not one for each row of the image
+    out = (x.reshape(len(x), -1, len(w)) if x.ndim > 2 else x) @ w  # a product for each image, not for each of its rows
     if b is not None:
         out += b
     return out.reshape(*x.shape[:-1], -1), (x, w)
@@ -66,8 +68,10 @@ def relu_backward(dout, cache):
 def pool_forward(x, grid):
     """Mean over each cell of a grid x grid partition: x (B, H, W, C) -> (B, grid, grid, C)."""
     B, H, W, C = x.shape
-    rows = x.reshape(B, grid, H // grid, W * C).mean(2)  # whole rows first: their numbers lie side by side
-    return rows.reshape(B, grid, grid, W // grid, C).mean(3), (x.shape, grid)
+    rows = x.reshape(B, grid, H // grid, W * C).sum(2)  # whole rows first: their numbers lie side by side
+    cells = rows.reshape(B, grid, grid, W // grid, C).sum(3)
+    cells /= H // grid * (W // grid)
+    return cells, (x.shape, grid)
 
 
 def pool_backward(dout, cache):
@@ -106,11 +110,11 @@ def softmax_cross_entropy(scores, labels, axis=-1):
 
     scores (..., K), or with the classes along another `axis`; labels (...) int -> loss, dscores like scores
     """
-    moved = np.moveaxis(scores, axis, 0)  # classes first: sums over them then run along memory
-    z = np.ascontiguousarray(moved.reshape(len(moved), -1))
+    moved = np.moveaxis(scores, axis, 0)
+    z = moved.reshape(len(moved), -1)
     n = z.shape[1]
-    e = np.exp(z - z.max(0))
-    p = e / e.sum(0)
+    p = np.exp(z - z.max(0))
+    p /= p.sum(0)
     right = labels.ravel(), np.arange(n)
     loss = -np.log(p[right] + np.finfo(p.dtype).tiny).mean()
     p[right] -= 1
@@ -129,7 +133,8 @@ class Adam:
     def step(self, grads, rate=None):
         """Move `params` in place against `grads`, a dict of the same names."""
         self.t += 1
-        rate = (self.rate if rate is None else rate) * np.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
+        rate = (self.rate if rate is None else rate) * math.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
+        rate = float(rate)  # of NumPy's kind it would widen what it multiplies to 64 bits
         for name, g in grads.items():
             m, v = self.m[name], self.v[name]
             m *= self.beta1

@@ -211,13 +211,14 @@ def cost(costs):
     ms = {name: 1000 * sum(of_cell["of stages"].get(name, 0) for of_cell in costs) / views for name in stages}
     ms["labels and graph"] = ms.pop("labels", 0) + ms.pop("graph")
     rows = [[name, f"{value:.2f}", VIEW_MS.get(name, "")] for name, value in sorted(ms.items(), key=lambda x: -x[1])]
-    seconds = sum(of_cell["seconds"] for of_cell in costs)
+    seconds, training = (sum(part["seconds"] for part in parts)
+                         for parts in (costs, [of_cell["of training"] for of_cell in costs]))
     rows.append(["all", f"{1000 * seconds / views:.2f}", f"{sum(VIEW_MS.values()):.0f}"])
     machines = Counter(of_cell["machine"] for of_cell in costs)
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
-    return (f"{views} views in {seconds / 3600:.1f} hours of one core; at most {memory:.0f} MB a process; "
-            f"{', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
+    return (f"{views} views in {seconds / 3600:.2f} hours of one core, {training / 3600:.2f} of them for the episodes of "
+            f"training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 
 

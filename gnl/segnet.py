@@ -13,6 +13,8 @@ its 64 x 64 pixels.
 A pixel is found by its square, quad and pixel, in this order in memory: so neither down nor up moves anything.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from .classes import N_CLASSES
@@ -96,11 +98,13 @@ def forward(params, rgb, learning=True):
         added += x
         x = relu(f"block{i}.second", added)
 
-    cells, heard = x, linear("pyramid", x)
+    cells, maps = x, [linear("pyramid", x)]
     for grid in reversed(GRIDS):  # the mean of a large cell is that of the small cells in it
         cells = keep(f"pool{grid}", pool_forward(cells, grid))
-        heard += upsample_forward(linear(f"pyramid{grid}", cells), x.shape[1] // grid)[0]
-    heard = relu("pyramid", heard)
+        maps.append(linear(f"pyramid{grid}", cells))
+    for large, small in pairwise(reversed(maps)):  # and what it hears, they hear
+        small += upsample_forward(large, small.shape[1] // large.shape[1])[0]
+    heard = relu("pyramid", maps[0])
 
     joined = linear("fine", fine)
     joined += linear("up", heard).reshape(joined.shape)
@@ -119,7 +123,7 @@ def standardise(rgb, dtype=np.float32):
     order = np.arange(H * W // 2).reshape(H // 4, 2, 2, W // 4, 2).transpose(0, 3, 1, 4, 2).ravel()
     flat = rgb.reshape(B, -1, 6).take(order, 1).reshape(B, -1).astype(dtype)
     flat -= np.einsum("bi->b", flat)[:, None] / flat.shape[1]  # many times faster than `mean`
-    spread = np.sqrt(np.einsum("bi,bi->b", flat, flat) / flat.shape[1])
+    spread = np.sqrt(np.vecdot(flat, flat) / flat.shape[1])
     flat *= 1 / (spread[:, None] + 1)  # a view of one colour stays at zero
     return flat.reshape(B, H // 4, W // 4, 4, 12)
 

@@ -145,6 +145,8 @@ def test_outcomes_and_costs_can_be_written_and_read(lived):
     assert costs["views"] > 5 * sum(len(poses) for poses, _ in given["train_nnql"] + given["run_all"])
     assert 0 < sum(costs["of stages"].values()) < costs["seconds"] < 100
     assert 0 < costs["of processor"] < 100
+    assert costs["of training"]["views"] == 5 * sum(len(poses) for poses, _ in given["train_nnql"])
+    assert 0 < costs["of training"]["seconds"] < costs["seconds"]
     assert 10 < costs["peak MB"] < 10_000
 
 

@@ -41,6 +41,7 @@ def folder(tmp_path_factory):
                   "from training starts": {name: outcome(rng, share) for name, share in
                                            (("MV", 0.4), ("Scan", 0.5), ("Ours", 0.6))}}
         costs = {"seconds": 3600.0 * (1 + i % 2), "views": 500_000, "of stages": {"labels": 3600.0, "graph": 100.0 * i},
+                 "of training": {"seconds": 1800.0 * (1 + i % 2), "views": 400_000},
                  "machine": f"core {i % 2}", "peak MB": 123.0 - i, "versions": {"numpy": "2.0"}}
         for kind, value in (("cells", result), ("costs", costs)):
             path = out / kind / f"{world}-{m:g}m-{deg}deg-seed0.json"
@@ -207,7 +208,8 @@ def test_costs_are_those_of_all_views(written):
     part = section(written, "What it costs")
     assert row(part, "labels and graph") == ["labels and graph", f"{(6 * 3600 + 1500) / 3000:.2f}", "18"]
     assert row(part, "all") == ["all", f"{9 * 3600 / 3000:.2f}", "28"]
-    assert "3000000 views in 9.0 hours of one core; at most 123 MB a process; core 0, core 1; numpy 2.0" in part
+    assert "3000000 views in 9.00 hours of one core, 4.50 of them for the episodes of training;" in part
+    assert "; at most 123 MB a process; core 0, core 1; numpy 2.0" in part
     assert part.index("labels and graph") < part.index("| all |")
 
 
