@@ -49,7 +49,7 @@ table: .venv/ready
 	@$(RUN) -m gnl table --out "$(TABLE)" $(ARGS)
 	@$(RUN) -m gnl report --out "$(TABLE)"
 
-test: .venv/ready
+test: .venv/cluster
 	@$(RUN) -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 lint: .venv/ready
@@ -71,5 +71,10 @@ clean:
 	    sys.exit(f"gnl: expected python >= 3.10, found {v[0]}.{v[1]}; name another with make PYTHON=...")'
 	@echo "setting up .venv ..."
 	@$(PYTHON) -m venv .venv
-	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test,cluster]'
+	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+# Tests run cells on a cluster of their own.
+.venv/cluster: .venv/ready
+	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[cluster]'
 	@touch $@

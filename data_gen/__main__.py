@@ -6,6 +6,7 @@ from pathlib import Path
 from gnl.draw import save_png
 from gnl.experiment import Cell
 from gnl.files import load_arrays, save_arrays
+from gnl.floor_plan import LARGEST_HOME_M
 from gnl.terminal import Stage, guarded, processes
 
 from .rooms import make_home
@@ -35,7 +36,7 @@ def starts(args):
     for name, size in (*sizes.items(), ("jobs", args.jobs)):
         if size < 1:
             raise ValueError(f"--{name}: expected at least 1, found {size}")
-    cells = [Cell(int(world), float(t_xy), int(t_theta), int(seed)) for world, t_xy, t_theta, seed in args.cell]
+    cells = [cell_of(words) for words in args.cell]
     files = {cell: Path(args.folder) / f"starts-{cell.name}.npz" for cell in cells}
     todo = [cell for cell, path in files.items() if not (path.exists() and load_arrays(path)[1] == sizes)]
     if not todo:
@@ -49,6 +50,17 @@ def starts(args):
                 save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
             stage((i + 1) / len(todo))
     stage.done(f"{len(todo)} gaps between where one learns and where one is tested")
+
+
+def cell_of(words):
+    """The Cell of `--cell WORLD M DEG SEED`."""
+    try:
+        cell = Cell(*(kind(word) for kind, word in zip((int, float, int, int), words, strict=True)))
+        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m < LARGEST_HOME_M):
+            raise ValueError
+    except ValueError:
+        raise ValueError(f"--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, found {' '.join(words)}") from None
+    return cell
 
 
 def main(argv=None):

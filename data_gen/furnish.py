@@ -133,7 +133,7 @@ def empty_floor(room):
 
 
 def in_one_part(clearance):
-    """Whether the robot gets from any free cell to any other; from one to the next it loses half a cell."""
+    """Whether the robot gets from any free cell to any other; half a cell is kept for the way between two centres."""
     return label(clearance > ROBOT_RADIUS_M + CELL_M / 2)[1] == 1
 
 

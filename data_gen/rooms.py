@@ -13,13 +13,13 @@ import numbers
 
 import numpy as np
 
+from gnl.floor_plan import DOOR_HEIGHT_M, WALL_HEIGHT_M
 from gnl.world import LEAF_THICKNESS_M, World
 
 from .box import Box
 from .furnish import furnish
 from .layout import cut, direction, draw_gaps, draw_rooms, draw_walls
 
-WALL_HEIGHT_M, DOOR_HEIGHT_M = 2.5, 2.0
 BEFORE_DOOR_M, BEFORE_OPENING_M = 0.95, 0.7  # floor kept clear on both sides; a leaf swings 0.9 m
 IN_EVERY_HOME = {"bed", "table", "sofa", "refrigerator", "tv", "other"}
 TRIES = 10000  # of nine rooms, one layout in forty is good
@@ -48,7 +48,7 @@ def home_plan(seed, aliasing=0.3):
         objects = gaps and draw_objects(rooms, gaps, aliasing, rng)
         if objects:
             return assemble(f"home-{seed}", rooms, gaps, objects)
-    raise RuntimeError(f"seed {seed}: expected a home within {TRIES} tries, found none")
+    raise ValueError(f"seed {seed}: expected a home within {TRIES} tries, found none")
 
 
 def draw_objects(rooms, gaps, aliasing, rng):

@@ -26,7 +26,7 @@ def starts_of(cell, world, n_training, n_tests, n_validation):
 def draw_starts(world, t_xy_m, t_theta_rad, n_training, n_tests, n_validation, rng):
     """Starts of one experiment as a dict: "tests", "validation" (of the test domain, too) and "training", (n, 3) each.
 
-    The test starts are drawn first and do not depend on the gap.
+    The test starts are drawn first: from equal generators they are the same whatever the gap.
     """
     tests, validation = world.free_poses(n_tests, rng), world.free_poses(n_validation, rng)
     training = training_starts(world, tests, t_xy_m, t_theta_rad, n_training, rng)
@@ -34,7 +34,7 @@ def draw_starts(world, t_xy_m, t_theta_rad, n_training, n_tests, n_validation, r
 
 
 def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
-    """n poses uniform over the free space that is beyond the gap from all test starts (m, 3): (n, 3).
+    """n poses uniform over the free space beyond the gap from the nearest of the tests (m, 3): (n, 3).
 
     ValueError with the share of poses that would do, if a home has too little of it
     """
@@ -46,8 +46,8 @@ def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
         drawn += DRAWN_AT_ONCE
         if sum(map(len, found)) < FEWEST * drawn:
             raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
-                             f"degrees off all {len(tests)} test starts, found {sum(map(len, found))} among {drawn} "
-                             "poses drawn")
+                             f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
+                             f"among {drawn} poses drawn")
     return np.concatenate(found)[:n]
 
 

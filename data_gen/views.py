@@ -14,11 +14,11 @@ from gnl.segnet import SIZE_PX
 from .rooms import make_home
 
 FIRST_WORLD_SEED = 800
-CLASSES_IN_VIEW = 3  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
+CLASSES_IN_VIEW, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
 
 def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
-    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with at least three classes.
+    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with three classes that fill 1 %.
 
     returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
     """
@@ -35,7 +35,7 @@ def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
         world, found = make_home(home), 0
         while found < wanted:
             image, label = render(world, world.free_poses(2 * wanted, rng), rng, SIZE_PX, noise)
-            seen = (label.reshape(len(label), -1, 1) == np.arange(N_CLASSES)).sum(1) >= 0.01 * SIZE_PX ** 2
+            seen = (label.reshape(len(label), -1, 1) == np.arange(N_CLASSES)).sum(1) >= LEAST_SHARE * SIZE_PX ** 2
             good = np.flatnonzero(seen.sum(1) >= CLASSES_IN_VIEW)[:wanted - found]
             rgb.append(image[good])
             labels.append(label[good])

@@ -20,6 +20,7 @@ from .compare import in_points, paired_difference
 from .experiment import Cell, costs, now
 from .files import load_arrays, write_whole
 from .outcomes import arrays, outcomes
+from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
@@ -27,7 +28,7 @@ from .table import Settings, agree, executor, finished, path_of, prepare, run_jo
 from .terminal import Stage
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
-CELLS = [Cell(world, 0.2, 10, 0) for world in (800, 801, 809)]  # narrow gaps leave room for many tests
+CELLS = [Cell(world, 0.2, 10, 0) for world in WORLDS]  # narrow gaps leave room for many tests
 
 
 def add_arguments(parser):
@@ -48,6 +49,7 @@ def run(args):
             raise ValueError(f"--points: expected some of {', '.join(sorted(points))}, found {point!r}")
     chosen = [choice for choice in CHOICES if not args.points or choice.point in args.points]
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
+    page = args.page and Path(args.page).read_text(encoding="utf-8")
     out = Path(args.out)
     agree(out / "settings.json", asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
@@ -61,12 +63,12 @@ def run(args):
             stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
     measured = effects(out, chosen)
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
-    if args.page:
-        write_whole(args.page, filled(Path(args.page).read_text(), measured).encode())
+    if page:
+        write_whole(args.page, filled(page, measured).encode())
 
 
 def name_of(choice, cell):
-    """For files: field-of-view-60-degrees-800-0.6m-50deg-seed0."""
+    """For files: field-of-view-60-degrees-800-0.2m-10deg-seed0."""
     return "-".join(re.findall(r"[\w.]+", f"{choice.point} {choice.other}")) + f"-{cell.name}"
 
 
@@ -76,13 +78,15 @@ def measure(choice, cell, senses, starts):
     learning = learning.spawn(1)[0] if choice.luck else learning
     senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
     with in_place(choice.constants):
-        senses.net = None if choice.true_labels else senses.net
+        if choice.true_labels:
+            senses.net = None
         if choice.anew:
             how = {"epochs": SETTINGS.gcn_epochs, "batch": SETTINGS.gcn_batch, "rate": SETTINGS.gcn_rate}
             senses.gcn = learned.learn_places(senses, grid, SETTINGS.gcn_views, 0, **how)
         robot = Robot(senses.world, choice.motion)
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
-        episode.train_nnql(senses, robot, grid, starts["training"], learning, choice.rules, store=store)
+        with in_place(choice.of_training):
+            episode.train_nnql(senses, robot, grid, starts["training"], learning, choice.rules, store=store)
         result = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
                                                        rules=choice.rules))
                   for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}

@@ -15,11 +15,11 @@ from .classes import CEILING, FLOOR
 from .photo import photograph
 from .strip import FACES, FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
 
-HEIGHT_M = 1.25  # CHOICE: table tops seen from above, refrigerators from the front
+HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
 RAYS_AT_ONCE = 4096  # as many as stay near the processor; twice as many where no photograph needs the room
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
-NO_SURFACE = 63  # the last bit: the lowest that is on, or so it counts, where no surface is
+NO_SURFACE = 63  # bit of the edges of no surface; where no bit is on, the lowest that is on counts as this one
 
 
 @dataclass(frozen=True)
@@ -102,11 +102,11 @@ def _pile(world, strip, size):
 
     # Sorting numbers of which the last digits are the place in the list is faster than asking for the order.
     far, bits = ((1 - nearness * NEAREST_M) * 2 ** 30).astype(int), len(ray).bit_length()
-    number = ((ray << 31) + far << bits) + np.arange(len(ray))
+    number = (((ray << 31) + far) << bits) + np.arange(len(ray))
     number = np.sort(number.take(np.flatnonzero(end > begin)))
-    shown = number & (1 << bits) - 1
+    shown = number & ((1 << bits) - 1)
     w = np.append(w, np.zeros(len(capped)))
-    return number >> 31 + bits, face.take(shown), w.take(shown), begin.take(shown), end.take(shown)
+    return number >> (31 + bits), face.take(shown), w.take(shown), begin.take(shown), end.take(shown)
 
 
 def _visible(pile, n_rays, size, n_boxes):
@@ -137,7 +137,7 @@ def _visible(pile, n_rays, size, n_boxes):
     on, begin = on.take(run), pixel.take(np.append(run, -1))
     begin, length = begin[:-1], begin[1:] - begin[:-1]
     run_ray = begin // H
-    lowest = np.bitwise_count(on ^ on - 1) - 1  # the digits up to the lowest that is on, less that one
+    lowest = np.bitwise_count(on ^ (on - 1)) - 1  # the digits up to the lowest that is on, less that one
     surface = first.take(run_ray) + lowest
     back = np.flatnonzero(lowest == NO_SURFACE)
     surface[back] = S + (begin[back] - run_ray[back] * H >= half)

@@ -17,7 +17,7 @@ SMOOTH, LINE_PX = 2, 19  # enlargement; from one line of text to the next
 
 
 class Canvas:
-    """Paper to draw on; all places and lengths in px of the finished picture, colours RGB or RGBA."""
+    """One sheet; colours are RGB or RGBA."""
 
     def __init__(self, width, height):
         self.width, self.height = round(width), round(height)

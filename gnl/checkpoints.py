@@ -59,6 +59,7 @@ class Checkpoints:
         for a in range(n_actions):
             cuts = np.cumsum(arrays[f"n_changed{a}"])[:-1]
             changed, to = (np.split(arrays[f"{name}{a}"], cuts) for name in ("changed", "changed_to"))
+            # Of no checkpoints at all np.split makes one empty piece.
             by_action.append(list(zip(arrays[f"born{a}"].tolist(), changed, to, strict=False)))
         self.entries = list(map(list, zip(*by_action, strict=True)))
         if self.entries:

@@ -28,6 +28,7 @@ class Choice:
     store: dict = field(default_factory=dict)
     motion: Motion = Motion()
     constants: dict = field(default_factory=dict)
+    of_training: dict = field(default_factory=dict)  # constants while NNQL learns
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
     anew: bool = False
@@ -50,7 +51,7 @@ def filter_ranks(_scores, pooled, _actions):
 
 
 def with_last_action(scores, _pooled, actions):
-    """State: the view's ranks and, as far apart as two views can be, the last action."""
+    """State: the view's ranks and the last action, one-hot: two actions are 1.4 apart, two views at most 1.8."""
     last = np.zeros((len(scores), N_ACTIONS + 1), np.float32)
     last[np.arange(len(scores)), 0 if actions is None else actions + 1] = 1
     return np.concatenate([reciprocal_ranks(scores), last], 1)
@@ -109,12 +110,13 @@ class BruteForce:
         return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)
 
 
-CAMERA, VIEW = "camera.FIELD_OF_VIEW_RAD", "strip.FIELD_OF_VIEW_RAD"
+FIELD_OF_VIEW = "camera.FIELD_OF_VIEW_RAD", "strip.FIELD_OF_VIEW_RAD"
 CHOICES = [
     Choice("labels of the views", "true labels", true_labels=True, anew=True),
     Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),
-    Choice("field of view", "60 degrees", constants={CAMERA: np.pi / 3, VIEW: np.pi / 3}, true_labels=True, anew=True),
-    Choice("field of view", "120 degrees", constants={CAMERA: 2 * np.pi / 3, VIEW: 2 * np.pi / 3}, true_labels=True,
+    Choice("field of view", "60 degrees", constants=dict.fromkeys(FIELD_OF_VIEW, np.pi / 3), true_labels=True,
+           anew=True),
+    Choice("field of view", "120 degrees", constants=dict.fromkeys(FIELD_OF_VIEW, 2 * np.pi / 3), true_labels=True,
            anew=True),
     Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
@@ -143,7 +145,7 @@ CHOICES = [
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
     Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),
-    Choice("order of learning", "one robot at a time", constants={"episode.SIDE_BY_SIDE": 1}),
+    Choice("order of learning", "one robot at a time", of_training={"episode.SIDE_BY_SIDE": 1}),
     Choice("luck of the training", "another seed", luck=True),
 ]
 OURS, TRUE_LABELS = Choice("all", "ours"), CHOICES[0]

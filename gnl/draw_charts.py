@@ -17,10 +17,10 @@ USUAL = BELIEF, ROBOT, INK, QUIET
 CELL_PX, RIM_PX, STRONGEST = (41, 34), (52, 44), 15.0  # points at which a colour is full
 
 
-def heat_maps(of_world, gaps_m, gaps_deg, title="Ours - MV, in points"):
+def heat_maps(of_world, gaps_m, gaps_deg):
     """Mean difference by gap for each world: {world: {(T_xy, T_theta): points}}."""
     maps = [_heat_map(points, gaps_m, gaps_deg) for points in of_world.values()]
-    return sheet(maps, [f"home {world}: {title}" for world in of_world])
+    return sheet(maps, [f"home {world}: Ours - MV, in points" for world in of_world])
 
 
 def _heat_map(points, gaps_m, gaps_deg):

@@ -67,7 +67,7 @@ class Senses:
 
 def probability(scores):
     """Likelihood of each place given a view: the classifier's probability and a floor, (B, K)."""
-    return softmax(scores) + FLOOR  # CHOICE: the paper does not say how a view weighs a particle
+    return softmax(scores) + FLOOR  # CHOICE: softmax and a floor; the paper does not say how a view weighs a particle
 
 
 def view_ranks(scores, _pooled, _actions):
@@ -114,7 +114,8 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
 
     The streams of appearance, motion, filter and exploration are independent children of `seed`. They are drawn
     alike in every step, so two planners see the same start, noise and particles until their actions differ.
-    watch(step, **what happened) is called after every look: that is where a learner learns
+    watch(step, poses, scores, filter, pooled, seen, actions, states, places, right, belief) is called by these names
+    after every look: that is where a learner learns. `seen` are the states before the actions, `states` those after
     """
     rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
@@ -191,18 +192,18 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
 
 
 def race(senses, robot, grid, starts, seed, rules=None):
-    """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,), the winner first.
+    """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,) for L = 4, the winner first.
 
     A sequence is worth the belief that it leaves in the true place, in the mean. Of 41 the luckiest looks best, so they
-    race: after each round the best third goes on, from three times as many new starts, the same for all. What repeats
-    one action is always in the race: little beats it, and options.py asks what it is worth.
+    race: after each round the best third goes on, from three times as many new starts, the same for all. Those that
+    repeat one action stay to the end: few others beat them, and options.py asks what they are worth.
     """
     length = (rules or Rules()).length
     sequences, first = planners.sequences(length), 0
     total, count, running = np.zeros(len(sequences)), np.zeros(len(sequences)), np.arange(len(sequences))
     repeats = np.flatnonzero((sequences == sequences[:, :1]).all(1))
-    for rank, child in enumerate(_seed(seed).spawn(length)):
-        size = max(1, len(starts) * 2 * 3 ** rank // (3 ** length - 1))
+    for n, child in enumerate(_seed(seed).spawn(length)):
+        size = max(1, len(starts) * 2 * 3 ** n // (3 ** length - 1))
         groups = side_by_side(np.arange(size * len(running)))
         for group, grandchild in zip(groups, child.spawn(len(groups)), strict=True):
             start, which = np.divmod(group, len(running))
@@ -225,7 +226,7 @@ def _update(belief, odometry, likelihood_of_view):
 
 
 def _seed(seed):
-    """A SeedSequence of its own for a number or another one: one that has spawned before would spawn others now."""
+    """A fresh SeedSequence of a number or of another one, which would not spawn the same children twice."""
     if isinstance(seed, np.random.SeedSequence):
         return np.random.SeedSequence(seed.entropy, spawn_key=seed.spawn_key)
     return np.random.SeedSequence(seed)

@@ -28,8 +28,10 @@ def write_whole(path, data):
         os.umask(mask)
         os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; give back the usual rights
         os.replace(temporary, path)
-    except BaseException:
+    except BaseException as error:
         os.unlink(temporary)
+        if isinstance(error, OSError) and error.errno and not error.filename:  # a full disk names no file
+            raise OSError(error.errno, error.strerror, str(path)) from None
         raise
 
 
@@ -72,11 +74,11 @@ def load_json(path, what):
 
 
 def check_params(path, params, wanted):
-    """ValueError if the arrays of a file differ from those `wanted` in name, shape or being numbers."""
+    """ValueError if the arrays of a file differ from those `wanted` in name or shape, or are not finite numbers."""
     for name in wanted | params:
         expected = wanted[name].shape if name in wanted else "nothing"
         found = params[name].shape if name in params else "nothing"
         if expected != found:
             raise ValueError(f"{path}: {name}: expected shape {expected}, found {found}")
         if not (np.issubdtype(params[name].dtype, np.floating) and np.isfinite(params[name]).all()):
-            raise ValueError(f"{path}: {name}: expected finite numbers, found {params[name].dtype}")
+            raise ValueError(f"{path}: {name}: expected finite numbers, found other {params[name].dtype}")

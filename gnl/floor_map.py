@@ -185,5 +185,3 @@ def column_name(ix):
 
 def row_name(iy):
     return str(iy + 1)
-
-

@@ -2,13 +2,14 @@
 
     {"name": "...", "units": "m", "wall_height": 2.5,
      "walls":   [[x0, y0, x1, y1], ...],
-     "doors":   [{"segment": [x0, y0, x1, y1], "height": 2.0, "state": "open"}],
+     "doors":   [{"segment": [x0, y0, x1, y1], "height": 2.0, "state": "open", "color": [r, g, b]}],
      "rooms":   [{"type": "bedroom", "polygon": [[x, y], ...]}],
      "objects": [{"class": "bed", "polygon": [[x, y], ...], "z0": 0.0, "height": 0.5, "color": [r, g, b]}],
      "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
 
-Metres; `height` is an object's own extent above `z0`. Only `walls` must be there. Keys that are not listed are
-left as they are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
+Metres; `height` is an object's own extent above `z0`. There must be `walls`; of a door its segment, of a room its
+polygon, of an object class, polygon and height. Keys that are not listed are left as they are. Each fault is one
+ValueError: file, place in the file, what was expected, what was found.
 """
 
 import json
@@ -47,7 +48,7 @@ def save(plan, path):
 def check(plan, source="floor plan"):
     """Return `plan` if it is a floor plan as in the head of this module; ValueError naming the fault if not."""
     def fail(place, expected, found):
-        raise ValueError(f"{source}: {place}: expected {expected}, found {json.dumps(found)[:60]}")
+        raise ValueError(f"{source}: {place}: expected {expected}, found {json.dumps(found, default=repr)[:60]}")
 
     def number(value, place, at_least=-math.inf):
         real = isinstance(value, (int, float)) and not isinstance(value, bool)
@@ -100,6 +101,8 @@ def check(plan, source="floor plan"):
         number(door.get("height", DOOR_HEIGHT_M), f"{place}.height", at_least=0.1)
         if door.get("state") not in (None, "open", "closed"):
             fail(f"{place}.state", '"open" or "closed"', door["state"])
+        if "color" in door:
+            colour(door["color"], f"{place}.color")
     for place, room in items("rooms"):
         polygon(room.get("polygon"), f"{place}.polygon")
     for place, thing in items("objects"):
@@ -114,7 +117,10 @@ def check(plan, source="floor plan"):
         fail("colors", "an object", plan["colors"])
     for name, value in plan.get("colors", {}).items():
         colour(value, f"colors.{name}")
-    extent = max(max(wall[k::2]) - min(w[k] for w in walls) for wall in walls for k in (0, 1))
-    if extent > LARGEST_HOME_M:
-        fail("walls", f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
+    ends = [end for wall in walls for end in (wall[:2], wall[2:])]
+    corners = [corner for room in plan.get("rooms", []) for corner in room["polygon"]]
+    for key, points in (("walls", ends), ("rooms", ends + corners)):
+        extent = max(max(line) - min(line) for line in zip(*points, strict=True))
+        if extent > LARGEST_HOME_M:
+            fail(key, f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
     return plan

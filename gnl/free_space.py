@@ -21,8 +21,8 @@ class FreeSpace:
         self.shape = tuple(np.ceil((np.array([x1, y1]) + MARGIN_M - self.origin) / RASTER_M).astype(int))
         shell = self._fill(centre, half, angle)
         to_shell = ndimage.distance_transform_edt(~shell) * RASTER_M
-        rooms, _ = ndimage.label(to_shell > GATE_M)
-        outside = ndimage.distance_transform_edt(rooms != rooms[0, 0]) * RASTER_M <= GATE_M
+        where_ball, _ = ndimage.label(to_shell > GATE_M)
+        outside = ndimage.distance_transform_edt(where_ball != where_ball[0, 0]) * RASTER_M <= GATE_M
         self._inside = ~outside
         bounded = self._fill(np.array([[(x0 + x1) / 2, (y0 + y1) / 2]]), np.array([[x1 - x0, y1 - y0]]) / 2, [0.0])
         if self._inside.sum() < 0.3 * bounded.sum():

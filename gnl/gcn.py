@@ -7,18 +7,17 @@ normalised as in Kipf and Welling 2017).
     H2 = ReLU(A_hat H1 W2 + b2)   A_hat = D^-1/2 (A + I) D^-1/2
     g  = mean over nodes of H2,   scores = g W3 + b3
 
-    B graphs   N nodes of all graphs, one behind the other   F hidden features   K places
+    B graphs   N nodes of all graphs, one behind the other   F, G features   K places
 """
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from .files import check_params, load_arrays, save_arrays
 from .nn import Adam, linear_backward, linear_forward, relu_backward, relu_forward, softmax_cross_entropy
-from .scene_graph import N_WORDS
+from .scene_graph import N_WORDS, sparse
 
-HIDDEN = 128  # CHOICE: 256 in the group's published code; no better here and twice the time
-BATCH, RATE, EPOCHS = 32, 0.001, 100
+HIDDEN = 128  # CHOICE: 256 in the group's code of 2021; no better here and twice the time
+BATCH, RATE, EPOCHS = 32, 0.001, 100  # the paper's
 
 
 def normalise_adjacency(edges, n_nodes, dtype=np.float32):
@@ -31,16 +30,10 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     i, j = edges.T
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
-    rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)
+    rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)  # row by row
     degree = np.bincount(rows, minlength=n_nodes)
     scale = (1 / np.sqrt(degree)).astype(dtype)
     return sparse(scale[rows] * scale[columns], columns, np.append(0, degree.cumsum()), n_nodes)
-
-
-def sparse(values, columns, starts, n_columns):
-    """A sparse matrix by rows: row i holds values[starts[i]:starts[i + 1]] in those columns (CSR)."""
-    # As int32: through longer numbers scipy would look every time, to see whether these would do.
-    return csr_matrix((values, columns.astype(np.int32), starts.astype(np.int32)), (len(starts) - 1, n_columns))
 
 
 def graph_convolution_forward(node_features, adjacency, weight, bias):

@@ -82,7 +82,11 @@ class KDTree:
         queries = check_points(points, self._points.shape[1]).astype(float)
         k = check_count("k", k, 1)
         n_first = self._n if n_first is None else check_count("n_first", n_first, 0, self._n)
-        return pack_answers([self._nearest(query, k, n_first) for query in queries], k)
+        distances, ids = np.full((len(queries), k), np.inf), np.full((len(queries), k), -1)
+        for i, query in enumerate(queries):
+            for j, answer in enumerate(self._nearest(query, k, n_first)):
+                distances[i, j], ids[i, j] = answer
+        return distances, ids
 
     def _nearest(self, query, k, n_first):
         """Best-first search for one query (dim,): open the nearest box, until it is beyond the k-th best."""
@@ -132,7 +136,7 @@ class _Node:
     def split(self, points):
         """Cut a leaf across its widest side at the median; returns its ids, which are the children's now.
 
-        Among ties the cut is the greatest value below the median, if there is one: no half is ever empty.
+        The cut is the greatest value below the median, or the least of all if none is below: no half is ever empty.
         """
         self.axis = int(np.argmax(self.high.astype(float) - self.low))
         values = points[self.ids, self.axis]
@@ -148,13 +152,6 @@ class _Node:
 def lengths(differences):
     """Euclidean lengths of the rows of (n, dim) -> (n,)."""
     return np.sqrt((differences ** 2).sum(axis=1))
-
-
-def pack_answers(answers, k):
-    """Of each query the (distance, id) pairs found -> distances (B, k), ids (B, k), filled with inf, -1."""
-    rows = [pairs + [(np.inf, -1)] * (k - len(pairs)) for pairs in answers]
-    distances = np.array([[distance for distance, _ in row] for row in rows], float)
-    return distances.reshape(-1, k), np.array([[i for _, i in row] for row in rows], int).reshape(-1, k)
 
 
 def check_points(points, dim):

@@ -1,7 +1,7 @@
 """Learned parts, each kept in a file: learnt when it is not there yet, loaded when it is.
 
-A file's name carries a digest of all that went into it (settings, seed, floor plan, training views), so other
-settings make another file and never a wrong answer.
+A file's name carries a digest of the settings that went into it (seed, floor plan, training views), so others make
+another file and never a wrong answer. Constants of the modules are not among them: to change one, begin with no files.
 """
 
 import hashlib

@@ -108,7 +108,7 @@ def softmax_cross_entropy(scores, labels, axis=-1):
 
         p = softmax(scores),   dscores = (p - onehot(labels)) / n
 
-    scores (..., K), or with the classes along another `axis`; labels (...) int -> loss, dscores like scores
+    scores (..., K), or with the classes along another `axis`; labels (...) int, n in all -> loss, dscores like scores
     """
     moved = np.moveaxis(scores, axis, 0)
     z = moved.reshape(len(moved), -1)
@@ -123,7 +123,11 @@ def softmax_cross_entropy(scores, labels, axis=-1):
 
 
 class Adam:
-    """Adam (Kingma and Ba 2015): steps scaled by running means of each gradient and of its square."""
+    """Adam (Kingma and Ba 2015, in the form at the end of their section 2): running means of gradients and squares.
+
+        m <- beta1 m + (1 - beta1) g,   v <- beta2 v + (1 - beta2) g^2
+        p <- p - rate sqrt(1 - beta2^t) / (1 - beta1^t) m / (sqrt(v) + eps)
+    """
 
     def __init__(self, params, rate=0.001, beta1=0.9, beta2=0.999, eps=1e-8):
         self.params, self.rate, self.beta1, self.beta2, self.eps, self.t = params, rate, beta1, beta2, eps, 0
@@ -134,7 +138,7 @@ class Adam:
         """Move `params` in place against `grads`, a dict of the same names."""
         self.t += 1
         rate = (self.rate if rate is None else rate) * math.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
-        rate = float(rate)  # of NumPy's kind it would widen what it multiplies to 64 bits
+        rate = float(rate)  # a float of NumPy would have the product below computed in 64 bits
         for name, g in grads.items():
             m, v = self.m[name], self.v[name]
             m *= self.beta1

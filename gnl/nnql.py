@@ -12,6 +12,7 @@ each with a value of its own. Any other pair has the mean value of its neighbour
               in (2) s' is the state that came after s, and a' any action that could be done there
 
     B states side by side   K numbers a state   A actions   n pairs of one action, in order of birth
+    k neighbours            r reward            alpha learning rate            gamma discount
 """
 
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ SAME = 1e-6  # distance within which a state counts as met before
 
 
 def epsilon(episode):
-    """Share of random actions in the n-th training episode: 1 / (0.1 (n + 1) + 1)."""
+    """Share of random actions in training episode n = 0, 1, ...: 1 / (0.1 (n + 1) + 1)."""
     return 1 / (0.1 * (np.asarray(episode) + 1) + 1)
 
 
@@ -46,7 +47,7 @@ class Neighbours:
 
     @classmethod
     def find(cls, index, states, k, n_first):
-        """Among the first n_first pairs; a later one is not available (N/A)."""
+        """Of states (B, K) among the first n_first pairs of an index; a later pair is not available (N/A)."""
         distance, pair = np.full((len(states), k), np.inf), np.full((len(states), k), -1)
         itself = index.find(states)  # much cheaper than its neighbours
         met = (itself >= 0) & (itself < n_first)
@@ -109,7 +110,8 @@ class NNQL:
 
         done : (B,) bool, nothing comes after
         """
-        # DIFFERS: what robots side by side live through in one step is learned at once, from one and the same Q.
+        # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
+        # several met is changed by one after the other.
         states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
         found = self._neighbours(states)
         if done.all():
@@ -143,8 +145,8 @@ class NNQL:
     def _neighbours(self, states):
         """Of each action the Neighbours of the states.
 
-        Planning asks for the states that learning has just looked up as the next ones, and learning again for those
-        of planning. So the last answer is kept, and pairs that are born join it.
+        Learning looks up the next states; planning then asks for the same ones, and so does the next step of
+        learning. So the last answer is kept, and pairs that are born join it.
         """
         states = np.asarray(states, np.float32)
         if not np.array_equal(states, self._states):
@@ -184,7 +186,7 @@ class NNQL:
 
 @dataclass(frozen=True)
 class PastQ:
-    """Q at a checkpoint: of each action the values of the pairs that were there, and the index of all pairs since."""
+    """Q at a checkpoint: of each action the values of the pairs there were, and the index, which has later ones too."""
 
     index: list
     values: list

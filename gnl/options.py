@@ -1,7 +1,7 @@
 """Options: an action that is gone on with, chosen once from the first view (Ours+, not in the paper).
 
 NNQL chooses anew after every look, from the latest view alone. It cannot know what it did last and often undoes it.
-An option (Sutton, Precup and Singh 1999) cannot: it is one action, done again and again. What options are worth is
+An option (Sutton, Precup and Singh 1999) never does: it is one action, done again and again. What options are worth is
 learned from the very steps that NNQL lived through, by the mean of neighbours, as there, and from the race of the
 fixed sequences, of which the options are three:
 
@@ -27,7 +27,7 @@ AT_ONCE = 64  # queries whose likeness to all that is remembered is held in memo
 
 
 class Experience:
-    """The first steps of some episodes: states, actions and rewards, one after the other."""
+    """All steps lived through until there are MOST_STEPS: states, actions and rewards, one after the other."""
 
     def __init__(self):
         self.steps, self.seen, self.actions, self.states, self.rewards = [], [], [], [], []

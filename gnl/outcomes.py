@@ -20,9 +20,9 @@ def strings(right):
     return ["".join("01"[int(one)] for one in look) for look in right.T]
 
 
-def arrays(strings):
+def arrays(looks):
     """The other way round: T strings -> (n, T) bool."""
-    characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in strings]).T
+    characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in looks]).T
     return characters == ord("1")
 
 
@@ -68,7 +68,7 @@ def adapted(result):
 
 
 def best_checkpoint(past):
-    """The one with the most right answers, of equal ones the latest; an outcome of each."""
+    """Index of the one with the most right answers, of equal ones the latest; `past` has an outcome of each."""
     return latest_best([answers(outcome).mean() for outcome in past])
 
 

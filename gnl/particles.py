@@ -13,15 +13,16 @@ import numpy as np
 
 N_PARTICLES = 5000
 N_START_PLACES = 3
-STD = 0.03, 0.03  # CHOICE: motion noise of the filter, m and rad; the paper names none
-FLOOR = 1e-3  # CHOICE: likelihood of a place that the classifier rules out
+STD = 0.03, 0.03  # CHOICE: 3 cm and 0.03 rad, as the odometry; the paper names no motion noise
+FLOOR = 1e-3  # CHOICE: 1e-3 for a place that the classifier rules out
 AT_ONCE = 8  # filters: one call of NumPy for all, and their particles stay near the processor
 
 
 class ParticleFilter:
     """B beliefs over the poses of a home, one for each of B robots side by side.
 
-    The filters share the noise of their motion: within a filter particles are independent, and that is all it needs.
+    The filters share the offsets of their start and the noise of their motion: within a filter particles are
+    independent, and that is all it needs.
     """
 
     def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES,
@@ -34,7 +35,8 @@ class ParticleFilter:
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
         self.grid, self.rng, self.std = grid, rng, std
         best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
-        # In k blocks, one a place: systematic resampling takes every n-th particle, and would alias with turns.
+        # Particles of one place lie in one block: were places to alternate (0, 1, 2, 0, 1, 2, ..), systematic
+        # resampling, which takes every n-th particle, could take all from one place.
         block = np.arange(M) * k // M
         low = grid.corner_of(best).astype(np.float32).take(block, 1)
         spread = rng.random((M, 3), np.float32) * np.float32([grid.cell_m, grid.cell_m, 2 * np.pi / grid.n_bearings])
@@ -82,12 +84,12 @@ class ParticleFilter:
         M weight up to i - 1 and up to i.
         """
         B, M = self.weight.shape
-        start = self.rng.random(B)
+        u = self.rng.random(B)
         for b in range(B):
             total = self.weight[b].cumsum(dtype=float)
-            mark = np.ceil(total * (M / total[-1]) - start[b]).astype(int)  # copies of particles up to this one
+            mark = np.ceil(total * (M / total[-1]) - u[b]).astype(int)  # copies of particles up to this one
             mark[-1] = M  # rounding must not lose the last one
-            drawn = np.bincount(mark)[:M].cumsum()  # copy j is of the particle before which lie all marks up to j
+            drawn = np.bincount(mark)[:M].cumsum()  # copy j is of the first particle whose mark exceeds j
             for of_particle in (self.x, self.y, self.theta, self.place):
                 of_particle[b] = of_particle[b].take(drawn)
         self.weight = np.full((B, M), 1 / M, np.float32)

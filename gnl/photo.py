@@ -18,7 +18,8 @@ from .strip import FACES, TOP, UNDERSIDE, slopes
 
 MOST_NOISE = 10.0
 SUN_RAD = 0.8  # bearing from which the light comes, so that two sides of a box differ
-EXPOSURE_STD, BALANCE_STD, GRADIENT_STD, SENSOR = 0.10, 0.04, 0.10, 0.10
+EXPOSURE_STD, BALANCE_STD, GRADIENT_STD = 0.10, 0.04, 0.10
+SENSOR = 0.10  # times a uniform byte, -128..127: at most 13 of 255
 # How much the texture of each class shows: wood and cloth much, paint and steel little.
 GRAIN = np.array([.03, .10, .02, .05, .10, .12, .08, .01, .01, .08])
 FARTHEST_M = 30

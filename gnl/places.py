@@ -3,7 +3,7 @@
 A home is cut into cells of 2 m x 2 m x 30 degrees; each is one class that the classifier learns to name.
 
     K = nx * ny * 12                 number of places
-    place = (ix * ny + iy) * 12 + ib
+    place = (ix * ny + iy) * 12 + ib  ix = 0..nx-1 along x, iy = 0..ny-1 along y, ib = 0..11 from theta = 0 on
 """
 
 import numpy as np

@@ -50,8 +50,9 @@ def go_on(options):
 def explore(nnql, epsilon):
     """Greedy, but by chance in a share epsilon (B,) of the cases: how NNQL gathers experience."""
     def plan(_step, states, rng):
-        best, any_, by_chance = best_actions(nnql.q_values(states), rng), *_draws(rng, len(states))
-        return np.where(by_chance < epsilon, any_, best)
+        best = best_actions(nnql.q_values(states), rng)
+        by_chance, coin = rng.integers(N_ACTIONS, size=len(states)), rng.random(len(states))
+        return np.where(coin < epsilon, by_chance, best)
     return plan
 
 
@@ -69,7 +70,3 @@ def sequences(length):
     undone = {LEFT, RIGHT}
     return np.array([s for s in itertools.product(range(N_ACTIONS), repeat=length)
                      if undone not in map(set, itertools.pairwise(s))])
-
-
-def _draws(rng, n):
-    return rng.integers(N_ACTIONS, size=n), rng.random(n)

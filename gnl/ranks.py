@@ -2,6 +2,8 @@
 
 The scores of a classifier are good for their order, not for their size. The best place gets 1, the second 1/2, the
 third 1/3: large where the classifier is confident, nearly zero for the many places that it rules out.
+
+    s_k = 1 / rank of place k      B views   K places
 """
 
 import numpy as np

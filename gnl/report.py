@@ -7,7 +7,7 @@ import numpy as np
 
 from . import draw, draw_charts
 from .compare import episodes_needed, in_points, mcnemar, over_cells
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell
 from .files import load_json, write_whole
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
@@ -59,17 +59,21 @@ def load(out):
 
 def load_cell(path):
     """Outcomes and costs of one cell."""
-    what = "the outcomes of a cell and their costs"
-    result, costs = load_json(path, what), load_json(path.parents[1] / "costs" / path.name, what)
-    try:
-        curve([result])
-        from_training(result)
-        cost([costs])
+    def looked_through(file, what, look):
+        found = load_json(file, what)
+        try:
+            look(found)
+        except (ValueError, KeyError, TypeError, IndexError, AttributeError, ZeroDivisionError) as error:
+            raise ValueError(f"{file}: expected {what}, found {error!r}") from None
+        return found
+
+    def look(result):
+        curve([result]), right(result), from_training(result), Cell(**result["cell"])
         if len(result["checkpoints"]) != N_CHECKPOINTS:
             raise ValueError(f"{len(result['checkpoints'])} checkpoints")
-    except (ValueError, KeyError, TypeError, IndexError) as error:
-        raise ValueError(f"{path}: expected {what}, found {error!r}") from None
-    return result, costs
+
+    return (looked_through(path, "the outcomes of a cell", look),
+            looked_through(path.parents[1] / "costs" / path.name, "the costs of a cell", lambda costs: cost([costs])))
 
 
 def sections(results, costs, settings):
@@ -91,7 +95,7 @@ def sections(results, costs, settings):
     yield "## What Ours knows by heart\n\n" + by_heart(results)
     yield "## Which checkpoint adaptation chose\n\n" + adaptation(results)
     yield ("![Learning curves](curves.png)\n\n"
-           "*Right after the last look, by checkpoint: Ours with its interval; the others learn nothing on the way.*")
+           "*Right after the last look, by checkpoint: Ours with its interval; the others have no checkpoints.*")
     yield "![Chosen checkpoints](chosen.png)\n\n*In how many cells adaptation chose each checkpoint.*"
     yield "## What it costs\n\n" + cost(costs)
     yield "## Table I\n\n" + whole_table(results, methods)
@@ -217,8 +221,9 @@ def cost(costs):
     machines = Counter(of_cell["machine"] for of_cell in costs)
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
-    return (f"{views} views in {seconds / 3600:.2f} hours of one core, {training / 3600:.2f} of them for the episodes of "
-            f"training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
+    return (f"{views} views in {seconds / 3600:.2f} hours by the clock, all cells together, {training / 3600:.2f} of "
+            f"them for the episodes of training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. "
+            "Milliseconds a view:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 
 

@@ -1,6 +1,7 @@
 """The robot: a disc that turns, goes forward and stops where it touches something.
 
-Contact is pymunk's own swept query: how far a disc gets along a line before it meets a shape.
+Contact is pymunk's own swept query: how far a point gets along a line among obstacles that are thicker by the robot's
+radius, which is how far a disc gets among the obstacles.
 
     action 0 turn left, 1 turn right, 2 forward
     pose (x [m], y [m], theta [rad]);  odometry (forward [m], turn [rad]): what the wheels report
@@ -24,9 +25,9 @@ SKIN_M = 1e-3  # a robot at rest keeps this from what stopped it, or the next qu
 class Motion:
     """How the robot moves; the noise is that of its odometry."""
 
-    turn_rad: float = np.pi / 6  # CHOICE: one bearing bin a turn
-    forward_m: float = 0.5  # CHOICE: Habitat's 0.25 m hardly leaves a 2 m cell in four steps
-    std_m: float = 0.03  # CHOICE: the paper names no motion noise
+    turn_rad: float = np.pi / 6  # CHOICE: 30 degrees, one bearing bin a turn
+    forward_m: float = 0.5  # CHOICE: 0.5 m: Habitat's 0.25 m hardly leaves a 2 m cell in four steps
+    std_m: float = 0.03  # CHOICE: 3 cm and 0.03 rad; the paper names no motion noise
     std_rad: float = 0.03
 
 
@@ -40,7 +41,7 @@ class Robot:
                                          world.angle[world.blocks], strict=True):
             turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
             corners = [(a, b), (-a, b), (-a, -b), (a, -b)]
-            # The obstacle gets the robot's radius: a thick query is not searched for beyond the bounds of a thin shape.
+            # Not the query is thick: pymunk leaves out shapes whose own bounds its bare line does not cross.
             self.space.add(pymunk.Poly(self.space.static_body, corners, turn, radius_m))
 
     def step(self, poses, actions, rng):

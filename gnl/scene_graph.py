@@ -108,8 +108,8 @@ def regions(labels):
 
     # CHOICE: pixels are connected by their sides (4-connected); the paper says only "part region".
 
-    # A run touches the runs of the next column from the one beside its first pixel to the one beside its last. That
-    # is the one beside the next run's first pixel, or where it begins just there, the one before.
+    # A run touches the runs of the next column from the one beside its first pixel to the one beside its last. The
+    # latter is beside the first pixel of the run below, too, unless it ends just there: then that one is one too far.
     beside = np.searchsorted(cuts, cuts + H, side="right") - 1
     first, last = beside[:-1], beside[1:] - begins[end + H]
     count = np.where(column % W < W - 1, last - first + 1, 0)
@@ -118,17 +118,23 @@ def regions(labels):
     same = np.flatnonzero(label[left] == label[right])
     n = len(begin)
     ends = np.append(0, np.bincount(left[same], minlength=n).cumsum())
-    links = csr_matrix((np.ones(len(same)), right[same].astype(np.int32), ends.astype(np.int32)), (n, n))
+    links = sparse(np.ones(len(same)), right[same], ends, n)
     region = connected_components(links, directed=False)[1]  # numbered in the order of their first runs
 
-    # Region by region: it is faster to sort numbers whose last digits are the place than to ask for the order.
+    # Region by region: it is faster to sort numbers whose last digits are the index than to ask for the order.
     order = np.sort((region.astype(int) << 32) + np.arange(n))
     region, order = order >> 32, order & (1 << 32) - 1
     cut = np.flatnonzero(np.diff(region, prepend=-1))
     x, y0, y1 = (column % W)[order], y0[order], (y0 + end - begin)[order]
-    low, high, total = ((lambda a, f=f: f.reduceat(a, cut)) for f in (np.minimum, np.maximum, np.add))
-    boxes = np.stack([x[cut], low(y0), high(x) + 1, high(y1)], 1)
-    return column[order[cut]] // W, label[order[cut]].astype(int), total(y1 - y0), boxes
+    low, high, total = np.minimum.reduceat, np.maximum.reduceat, np.add.reduceat
+    boxes = np.stack([x[cut], low(y0, cut), high(x, cut) + 1, high(y1, cut)], 1)
+    return column[order[cut]] // W, label[order[cut]].astype(int), total(y1 - y0, cut), boxes
+
+
+def sparse(values, columns, starts, n_columns):
+    """A sparse matrix row by row: row i holds values[starts[i]:starts[i + 1]] in those columns (CSR)."""
+    # As int32: through longer numbers scipy would look every time, to see whether these would do.
+    return csr_matrix((values, columns.astype(np.int32), starts.astype(np.int32)), (len(starts) - 1, n_columns))
 
 
 def word_of(label, boxes, size=(VIEW_PX, VIEW_PX)):

@@ -4,13 +4,14 @@ The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the vi
 its 64 x 64 pixels.
 
     stem    64 x 64 pixels as 32 x 32 quads of 2 x 2, each 12 colours and a height -> 16    linear, ReLU
-    down    each square of 2 x 2 quads becomes one place: 16 x 16 x 64 -> 16 x 16 x 16    linear, ReLU
+    down    each square of 2 x 2 quads, 4 x 16 numbers -> 16: 16 x 16 x 16    linear, ReLU
     block   16 x 16 x 16, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
-    pyramid every place hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
+    pyramid every square hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
     up      16 x 16 x 16 -> 16 x 16 x 64, the four quads of the square; added to a map of the stem, ReLU
     head    each quad, 16 -> 10 scores for each of its 4 pixels
 
-A pixel is found by its square, quad and pixel, in this order in memory: so neither down nor up moves anything.
+Maps lie in memory square by square, in it quad by quad: so neither down nor up moves anything. Scores and labels have
+class and pixel in front (`to_quads`).
 """
 
 from itertools import pairwise
@@ -18,7 +19,7 @@ from itertools import pairwise
 import numpy as np
 
 from .classes import N_CLASSES
-from .files import load_arrays, save_arrays
+from .files import check_params, load_arrays, save_arrays
 from .nn import (
     Adam,
     conv_backward,
@@ -67,7 +68,8 @@ def new_params(rng, dtype=np.float32):
 def forward(params, rgb, learning=True):
     """Scores of each pixel, classes first and pixels as in `to_quads`; cache: those of the layers by name.
 
-    rgb (B, 64, 64, 3) uint8 -> (10, 4, B, 16, 16, 4); not `learning`: no cache, which costs room near the processor
+    rgb (B, 64, 64, 3) uint8 -> (10 classes, 4 pixels of a quad, B, 16, 16, 4 quads of a square)
+    learning : if not, no cache is kept, which would cost room near the processor
     """
     cache = {}
 
@@ -102,7 +104,7 @@ def forward(params, rgb, learning=True):
     for grid in reversed(GRIDS):  # the mean of a large cell is that of the small cells in it
         cells = keep(f"pool{grid}", pool_forward(cells, grid))
         maps.append(linear(f"pyramid{grid}", cells))
-    for large, small in pairwise(reversed(maps)):  # and what it hears, they hear
+    for large, small in pairwise(reversed(maps)):  # and what it hears, they hear, too
         small += upsample_forward(large, small.shape[1] // large.shape[1])[0]
     heard = relu("pyramid", maps[0])
 
@@ -112,7 +114,7 @@ def forward(params, rgb, learning=True):
     # Classes first: the loss and the best class then run along memory.
     scores = np.ascontiguousarray(params["head.w"].T) @ joined.reshape(-1, WIDTH).T
     scores += params["head.b"][:, None]
-    cache["head"] = joined, params["head.w"]
+    scores = keep("head", (scores, (joined, params["head.w"])))
     return scores.reshape(N_CLASSES, QUAD, *joined.shape[:-1]), cache
 
 
@@ -129,7 +131,7 @@ def standardise(rgb, dtype=np.float32):
 
 
 def heights(n, dtype=np.float32):
-    """Heights of the quads in n rows of squares, from 1 down to -1, (n, 1, 4, 1). No tilt, so the floor is low."""
+    """Heights of the quads in n rows of squares, from 1 down to -1, (n, 1, 4, 1). The camera never tilts."""
     rows = 1 - np.arange(2 * n, dtype=dtype) / (n - 0.5)
     return rows.reshape(n, 1, 2, 1).repeat(2, 2)
 
@@ -174,32 +176,32 @@ def predict(params, rgb, chunk=8):
     for i in range(0, len(rgb), chunk):
         scores, _ = forward(params, rgb[i:i + chunk], learning=False)
         best, quads = scores.max(0), np.zeros(scores.shape[1:], np.uint8)
-        for k in range(1, N_CLASSES):  # arg max over classes, many times faster than along an axis of ten
+        for k in range(1, N_CLASSES):  # the best class, of equals the last; many times faster than argmax over ten
             np.maximum(quads, (scores[k] == best) * np.uint8(k), out=quads)
         labels[i:i + chunk] = from_quads(quads)
     return labels
 
 
 def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
-    """Fit `params` in place to views and their labels; each view is seen mirrored half the time.
+    """Fit `params` in place to views and their labels; half of the batches are seen mirrored.
 
+    The rate rises over the first 20th of the steps and falls along a cosine.
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
     batch = min(batch, len(rgb))
-    adam, n_steps = Adam(params), epochs * (len(rgb) // batch)
-    for step in range(n_steps):
-        if step % (len(rgb) // batch) == 0:
-            order = rng.permutation(len(rgb))
-        i = order[step * batch % (len(rgb) // batch * batch):][:batch]
-        x, y = rgb[i], labels[i]
-        if rng.random() < 0.5:
-            x, y = x[:, :, ::-1], y[:, :, ::-1]
-        scores, cache = forward(params, x)
-        loss, dscores = softmax_cross_entropy(scores, to_quads(y), axis=0)
-        share = (step + 1) / n_steps
-        adam.step(backward(params, dscores, cache), rate * min(1, 20 * share) * (1 + np.cos(np.pi * share)) / 2)
-        if progress:
-            progress(share, loss)
+    adam, n_batches = Adam(params), len(rgb) // batch  # of an epoch; what is left over waits for another one
+    for epoch in range(epochs):
+        batches = rng.permutation(len(rgb))[:n_batches * batch].reshape(n_batches, batch)
+        for step, i in enumerate(batches, epoch * n_batches + 1):
+            x, y = rgb[i], labels[i]
+            if rng.random() < 0.5:
+                x, y = x[:, :, ::-1], y[:, :, ::-1]
+            scores, cache = forward(params, x)
+            loss, dscores = softmax_cross_entropy(scores, to_quads(y), axis=0)
+            share = step / (epochs * n_batches)
+            adam.step(backward(params, dscores, cache), rate * min(1, 20 * share) * (1 + np.cos(np.pi * share)) / 2)
+            if progress:
+                progress(share, loss)
 
 
 def accuracy(predicted, true):
@@ -233,9 +235,5 @@ def save(params, path, made_by):
 def load(path):
     """Weights of a file of `save`, and what made them; ValueError if they do not fit this net."""
     params, made_by = load_arrays(path)
-    wanted = {name: p.shape for name, p in new_params(np.random.default_rng(0)).items()}
-    found = {name: p.shape for name, p in params.items()}
-    if wanted != found:
-        name = next(k for k in wanted | found if wanted.get(k) != found.get(k))
-        raise ValueError(f"{path}: {name}: expected shape {wanted.get(name)}, found {found.get(name)}")
+    check_params(path, params, new_params(np.random.default_rng(0)))
     return params, made_by

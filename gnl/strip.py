@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FIELD_OF_VIEW_RAD = np.pi / 2  # CHOICE: Habitat's default
+FIELD_OF_VIEW_RAD = np.pi / 2  # CHOICE: 90 degrees, Habitat's default
 TOP, UNDERSIDE, FACES = 4, 5, 6  # faces of a box; 0..3 are its sides, counter-clockwise from the end of its first axis
 NEAREST_M = 0.05  # nearer things are cut off: the camera sits inside the robot
 IN_FRONT_M = 1e-9

@@ -14,11 +14,12 @@ from .episode import Senses
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from .files import load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
+from .outcomes import arrays
+from .paper import WORLDS
 from .photo import check_noise
 from .terminal import Stage, processes
 from .world import World
 
-WORLDS = (800, 801, 809)  # after the paper's scenes 00800, 00801, 00809; homes below 800 teach the net
 GAPS = tuple(f"{m}/{deg}" for m in GAPS_M for deg in GAPS_DEG)
 
 
@@ -110,7 +111,7 @@ def prepare(out, settings, cells, jobs, pool):
     stage = Stage("net")
     rgb_and_labels, views_made_by = load_arrays(views)
     net = learned.segmentation_net(out / "learned", (rgb_and_labels["rgb"], rgb_and_labels["labels"]), views_made_by,
-                                   settings.net_epochs, 0, stage)
+                                   settings.net_epochs, seed=0, stage=stage)
     stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
     senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}
@@ -168,11 +169,14 @@ def agree(path, settings):
 
 
 def finished(out, name):
-    """Whether the file of a cell's outcomes is there and whole; a damaged one is named and set aside."""
+    """Whether the files of a cell are there and its outcomes whole; damaged ones are named and set aside."""
     path = path_of(out, name)
+    if not (path.exists() and (path.parents[1] / "costs" / path.name).exists()):
+        return False
     try:
-        return path.exists() and json.loads(path.read_bytes())["name"] == name
-    except (ValueError, KeyError, TypeError):
+        result = json.loads(path.read_bytes())
+        return result["name"] == name and all(len(arrays(one["place"])) for one in result["tests"].values())
+    except (ValueError, KeyError, TypeError, AttributeError):
         aside = path.with_suffix(".damaged")
         os.replace(path, aside)
         print(f"{path}: expected the outcomes of a cell, found something else; set aside as {aside.name}, done again",
@@ -200,6 +204,6 @@ def executor(jobs, address=None):
     try:
         from dask.distributed import Client
     except ImportError:
-        raise ValueError("--dask: expected dask to be installed, pip install 'gnl[cluster]'; found none") from None
+        raise ValueError("--dask: expected dask to be installed, pip install -e '.[cluster]'; found none") from None
     with Client(address) as client:
         yield client.get_executor()

@@ -6,8 +6,9 @@ boxes that cover it. Everything downstream (collision, rays, views) sees boxes o
     centre (N, 2) m    half (N, 2) m     centre and half the side lengths of each box's footprint
     angle  (N,)   rad                    of its first side, counter-clockwise from +x
     z      (N, 2) m                      bottom and top
-    label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1
+    label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1, as are floor_colour and ceiling_colour
     blocks, carries (N,) bool            what a robot cannot pass; what has something standing on it or hanging above
+    bounds (x0, y0, x1, y1) m            of the walls
 """
 
 import zlib
@@ -124,7 +125,7 @@ class World:
         left, middle = np.array([-along[1], along[0]]), (hinge + end) / 2
         leads_out = not self.free_space.inside(middle + 0.4 * np.array([left, -left])).all()
         # CHOICE: a door of which the plan says nothing is open, but a front door is shut.
-        is_open = door.get("state", "closed" if leads_out else "open") == "open"
+        is_open = (door.get("state") or ("closed" if leads_out else "open")) == "open"
         # A segment along a wall is no gap: a folding door that stands open there.
         folded = box_distance(middle[None], walls[:, 0:2], walls[:, 2:4], walls[:, 4]).min() < 0.1
         if is_open and not folded:

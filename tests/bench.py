@@ -13,7 +13,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from data_gen.rooms import make_home
-from gnl import episode, gcn, nn, planners, segnet
+from gnl import episode, gcn, nn, segnet
 from gnl.camera import true_labels
 from gnl.nnql import NNQL
 from gnl.particles import ParticleFilter
@@ -171,7 +171,7 @@ def neighbours(table, rng):
 
 
 def steps(table, world, rng):
-    """A step of an episode, all stages, with much to remember beside one with little."""
+    """A step of robots that learn, all stages, with much to remember beside one with little."""
     grid = PlaceGrid(world)
     senses = episode.Senses(world, segnet.new_params(rng), gcn.GCN(grid.n_places, rng))
     robot, starts = Robot(world), world.free_poses(64, rng)
@@ -181,9 +181,9 @@ def steps(table, world, rng):
         for a, states in enumerate(np.array_split(views_like(n, grid.n_places, rng), N_ACTIONS)):
             store.index[a].add(states)
             store.values[a] = np.zeros(len(states))
-        return lambda: episode.run(senses, robot, grid, planners.greedy(store), starts, 0)
+        return lambda: episode.train_nnql(senses, robot, grid, starts, 0, store=store)
 
-    table.race("a step of 64 robots, 40,000 pairs", with_pairs(40_000), 64 * 5,
+    table.race("a step of 64 learners, 40,000 pairs", with_pairs(40_000), 64 * 5,
                ("with 4,000 pairs", with_pairs(4_000), 64 * 5, 1.5, 1.0))
 
 

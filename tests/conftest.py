@@ -1,8 +1,12 @@
-"""Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones; what make begins."""
+"""Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones.
+
+And what `make` would begin, and a disk that is full.
+"""
 
 import ast
 import copy
 import functools
+import os
 import subprocess
 from pathlib import Path
 
@@ -99,6 +103,12 @@ def strewn(request):
 def real_home_path(request):
     """The flat that comes with gnl, and the homes beside the project where they are."""
     return request.param
+
+
+def full_disk(handle, mode):
+    """In the place of os.fdopen: a file for whose bytes there is no room."""
+    os.close(handle)
+    return open("/dev/full", mode)
 
 
 def begun_by_make(*words):

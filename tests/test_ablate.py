@@ -18,6 +18,7 @@ from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Rules, Senses
 from gnl.experiment import to_bytes
+from gnl.files import write_whole
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion
@@ -52,13 +53,13 @@ def test_every_choice_runs_and_leaves_no_trace(choice, parts, monkeypatch):
 
 
 OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Motion(forward_m=1.0), true_labels=True,
-               anew=True, constants={"camera.HEIGHT_M": 0.7})
+               anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3})
 
 
 @pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
 def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, parts, monkeypatch):
     senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
-    gcn, learnt, trained, tested = senses.gcn, [], [], []
+    gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
     def learn_places(senses, grid, n_views, seed, **how):
         learnt.append((senses.net, n_views, how))
@@ -67,11 +68,13 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     def train_nnql(senses, robot, grid, poses, seed, rules, store):
         trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
         assert (poses is starts["training"], store.k) == (True, choice.store.get("k", nnql.K_NEIGHBOURS))
+        there = choice.of_training.get("episode.SIDE_BY_SIDE", at_once)
+        assert there == episode.SIDE_BY_SIDE
         tested.append(seed.spawn_key)
 
     def run_all(senses, robot, grid, plan, poses, seed, rules):
         trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
-        assert poses is starts["tests"]
+        assert (poses is starts["tests"], episode.SIDE_BY_SIDE) == (True, at_once)
         tested.append(seed.spawn_key)
         answers = np.full((8, 5), 0 if plan is planners.chance else 99)
         return SimpleNamespace(answers=answers, places=np.zeros((8, 5), int), correct=answers == 0)
@@ -129,9 +132,9 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
     changes = []
     for choice in CHOICES:
         here = constants()
-        with ablate.in_place(choice.constants):
+        with ablate.in_place(choice.constants | choice.of_training):
             changed = {name: value for name, value in constants().items() if value != here[name]}
-            assert len(changed) == len(choice.constants)
+            assert len(changed) == len(choice.constants | choice.of_training)
             assert camera.FIELD_OF_VIEW_RAD == strip.FIELD_OF_VIEW_RAD
         assert choice.true_labels >= any("camera" in name for name in choice.constants)  # no net knows such views
         changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck))
@@ -149,8 +152,8 @@ def write_outcomes(out, choices):
     for choice, cell in itertools.product(choices, ablate.CELLS):
         tests = {name: {"place": ["".join(rng.choice(["0", "1"], 50)) for _ in range(5)]} for name in ("MV", "Ours")}
         path = path_of(out, ablate.name_of(choice, cell))
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(to_bytes({"name": ablate.name_of(choice, cell), "tests": tests}))
+        write_whole(path, to_bytes({"name": ablate.name_of(choice, cell), "tests": tests}))
+        write_whole(out / "costs" / path.name, b"{}")
 
 
 @pytest.mark.parametrize(("choice", "beside"), [(NO_EDGES, OURS), (TRUE_LABELS, OURS), (HIGHER, TRUE_LABELS)])
@@ -216,6 +219,7 @@ def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():
 
 
 @pytest.mark.parametrize(("options", "words"), [(["--jobs", "0"], "--jobs: expected at least 1, found 0"),
+                                                (["--page", "no/page.md"], "no/page.md"),
                                                 (["--points", "luck"], "found 'luck'")])
 def test_an_option_that_cannot_be_is_one_line(tmp_path, capsys, options, words):
     with pytest.raises(SystemExit) as exit:

@@ -225,6 +225,10 @@ def unlike_views(path):
     save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.zeros((7, 64, 64), np.uint8))
 
 
+def views_of_150_classes(path):
+    save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.full((8, 64, 64), 149, np.uint8))
+
+
 def assert_one_line(capsys, arguments, *words):
     """Status 2 and one line on stderr."""
     with pytest.raises(SystemExit) as exit:
@@ -255,8 +259,8 @@ def test_a_plan_that_is_none_is_named(tmp_path, capsys, make):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views],
-                         ids=lambda make: make.__name__)
+@pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views,
+                                  views_of_150_classes], ids=lambda make: make.__name__)
 def test_views_that_are_none_are_named(tmp_path, capsys, make):
     make(tmp_path / "views")
     assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "views", "--out", tmp_path / "out"],

@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 import pytest
+from conftest import full_disk
 
 from gnl.files import FORMAT, load_arrays, save_arrays, write_whole
 
@@ -41,6 +42,14 @@ def test_an_interrupted_write_leaves_all_as_it_was(tmp_path, monkeypatch, stop, 
         patch.setattr(os, "fdopen", HalfWay)
         write_whole(tmp_path / "file", b"new and longer")
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"] * existed
+
+
+def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path, monkeypatch):
+    with monkeypatch.context() as patch, pytest.raises(OSError) as full:
+        patch.setattr(os, "fdopen", full_disk)
+        write_whole(tmp_path / "file", b"new")
+    assert str(full.value) == f"[Errno 28] No space left on device: '{tmp_path / 'file'}'"
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_failed_rename_leaves_all_as_it_was(tmp_path, monkeypatch):

@@ -19,7 +19,7 @@ MAY_DRAW = {f"gnl.{name}" for name in ("demo", "replay", "draw", "draw_graph", "
                                        "__main__")}
 LONGEST = 250
 OPEN_POINTS = ROOT / "tutorials" / "open_points.md"
-PAGES = [ROOT / "README.md", *sorted((ROOT / "tutorials").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "tutorials").rglob("*.md"))]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 
 

@@ -251,7 +251,8 @@ def test_a_second_report_is_the_same(folder, tmp_path):
     assert files == {path.name: path.read_bytes() for path in (tmp_path / "second").iterdir()}
 
 
-@pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3', b'{"cell": {"world": 800}, "tests": {}}'])
+@pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3', b'{"cell": {"world": 800}, "tests": {}}',
+                                    b'{"checkpoints": [{"place": [1, 2]}], "tests": {}}'])
 def test_a_damaged_cell_is_named(tmp_path, capsys, damage):
     path = tmp_path / "cells" / "800-1m-90deg-seed0.json"
     for file, data in ((path, damage), (tmp_path / "costs" / path.name, b"{}"), (tmp_path / "settings.json", b"{}")):
@@ -275,7 +276,22 @@ def test_damaged_settings_and_costs_are_named(folder, tmp_path, capsys, name, da
         main(["report", "--out", str(tmp_path / "one")])
     err = capsys.readouterr().err
     assert exit.value.code == 2
-    assert path.name in err
+    assert f": {path}: " in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("missing", ["cell", "validation", "tests", "checkpoints", "from training starts"])
+def test_a_cell_that_lacks_a_part_is_named(folder, tmp_path, capsys, missing):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
+    path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
+    result = json.loads(path.read_bytes())
+    del result[missing]
+    path.write_bytes(to_bytes(result))
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(tmp_path / "one")])
+    err = capsys.readouterr().err
+    assert exit.value.code == 2
+    assert err.startswith(f"python -m gnl: {path}: expected the outcomes of a cell, found KeyError('{missing}')")
     assert err.count("\n") == 1
 
 

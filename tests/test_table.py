@@ -10,9 +10,9 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from conftest import begun_by_make
+from conftest import begun_by_make, full_disk
 
-from gnl import table
+from gnl import files, table
 from gnl.__main__ import main
 from gnl.experiment import Cell
 
@@ -127,6 +127,15 @@ def test_a_cluster_gives_the_same_bytes(reference, prepared):
     assert cells(prepared) == reference.cells
 
 
+def test_a_cell_without_its_costs_is_done_again(reference, prepared):
+    for folder in ("cells", "costs"):
+        shutil.copytree(reference.folder / folder, prepared / folder)
+    (prepared / "costs" / f"{NAMES[0]}.json").unlink()
+    assert main_here(prepared, "--jobs", 1) == 0
+    assert (prepared / "costs" / f"{NAMES[0]}.json").exists()
+    assert cells(prepared) == reference.cells
+
+
 def main_here(out, *options):
     """The command in this process: its exit status."""
     with pytest.raises(SystemExit) as exit:
@@ -134,16 +143,18 @@ def main_here(out, *options):
     return exit.value.code
 
 
-def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, prepared, capsys):
+@pytest.mark.parametrize("damage", ["cut off", "emptied"])
+def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, prepared, capsys, damage):
     shutil.copytree(reference.folder / "cells", prepared / "cells")
     shutil.copytree(reference.folder / "costs", prepared / "costs")
     damaged = prepared / "cells" / f"{NAMES[1]}.json"
-    damaged.write_bytes(reference.cells[damaged.name][:100])
+    there = reference.cells[damaged.name][:100] if damage == "cut off" else b'{"name": "%s"}' % NAMES[1].encode()
+    damaged.write_bytes(there)
     assert main_here(prepared, "--jobs", 1) == 0
     err = capsys.readouterr().err
     assert err.startswith(f"{damaged}: expected ")
     assert err.count("\n") == 1
-    assert damaged.with_suffix(".damaged").read_bytes() == reference.cells[damaged.name][:100]
+    assert damaged.with_suffix(".damaged").read_bytes() == there
     assert damaged.read_bytes() == reference.cells[damaged.name]
 
 
@@ -201,14 +212,15 @@ def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys
         shutil.copy(reference.folder / folder / first, prepared / folder)
 
     def full(path, data):
-        if path.parent.name == "cells":
-            raise OSError(28, "No space left on device", str(path))
-        write(path, data)
+        with monkeypatch.context() as disk:
+            if path.parent.name == "cells":
+                disk.setattr(files.os, "fdopen", full_disk)
+            write(path, data)
 
     monkeypatch.setattr(table, "write_whole", full)
     assert main_here(prepared, "--jobs", 1) == 2
     err = capsys.readouterr().err
-    assert "No space left on device" in err
+    assert f"No space left on device: '{prepared / 'cells' / NAMES[1]}.json'" in err
     assert err.count("\n") == 1
     assert cells(prepared) == {first: reference.cells[first]}
     monkeypatch.setattr(table, "write_whole", write)

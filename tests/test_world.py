@@ -166,6 +166,7 @@ def test_a_folding_door_along_a_wall_stays_there():
 def test_of_doors_without_a_state_a_front_door_is_shut_and_an_inner_door_open():
     assert not World(front_door()).is_free([[0, 2]])
     assert World(inner_door()).is_free([[3, 1.95]])
+    assert World(inner_door(state=None)).is_free([[3, 1.95]])
 
 
 def test_what_lies_before_an_open_front_door_is_not_inside():

@@ -1,10 +1,11 @@
-"""Cross-view starts: tests uniform in free space; training beyond the gap from all of them, and else uniform, too."""
+"""Cross-view starts: tests uniform in free space; training beyond the gap from the nearest, and else uniform, too."""
 
 import numpy as np
 import pytest
 from scipy import stats
 
 from data_gen import starts as starts_module
+from data_gen.__main__ import main
 from data_gen.rooms import make_home
 from data_gen.starts import beyond_gap, draw_starts, starts_of, training_starts
 from gnl.canvas import BELIEF, ROBOT
@@ -110,8 +111,8 @@ def test_a_cell_has_starts_beyond_its_own_gap_the_same_each_time_and_as_no_other
 
 def test_a_gap_that_a_home_has_no_room_for_is_refused_with_the_share_that_was_seen():
     home = World(room(size=(2.0, 2.0)))
-    with pytest.raises(ValueError, match=r"room: expected room for starts 3 m and 10 degrees off all 5 test starts, "
-                                         r"found 0 among \d+ poses drawn"):
+    with pytest.raises(ValueError, match=r"room: expected room for starts 3 m and 10 degrees off the nearest of 5 test "
+                                         r"starts, found 0 among \d+ poses drawn"):
         draw_starts(home, 3.0, np.radians(10), 10, 5, 1, np.random.default_rng(0))
 
 
@@ -151,3 +152,13 @@ def test_few_tests_leave_room_in_a_bearing_of_their_own():
     home, tests = World(room()), np.array([[3.0, 2.0, 0.0]])
     starts = training_starts(home, tests, 0.0, np.radians(179), 50, np.random.default_rng(0))
     assert (abs(wrap_angle(starts[:, 2] - np.pi)) < np.radians(1) + 1e-9).all()
+
+
+@pytest.mark.parametrize("words", ["eight 0.2 10 0", "800 x 10 0", "800 0.2 ten 0", "800 0.2 10 -1", "800 nan 10 0"])
+def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
+    with pytest.raises(SystemExit) as exit:
+        main(["starts", str(tmp_path / "out"), "--cell", *words.split()])
+    assert exit.value.code == 2
+    assert capsys.readouterr().err == ("python -m data_gen: --cell: expected WORLD M DEG SEED as in 800 0.2 10 0, "
+                                       f"found {words}\n")
+    assert not list(tmp_path.iterdir())
