@@ -4,7 +4,7 @@ The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the vi
 its 64 x 64 pixels.
 
     stem    64 x 64 pixels as 32 x 32 quads of 2 x 2, each 12 colours and a height -> 16    linear, ReLU
-    down    each square of 2 x 2 quads, 4 x 16 numbers -> 16: 16 x 16 x 16    linear, ReLU
+    down    each square of 2 x 2 quads, 4 x 16 -> 16: 16 x 16 x 16    linear, ReLU
     block   16 x 16 x 16, a residual: x + conv(ReLU(conv(x))), ReLU               (He et al. 2016)
     pyramid every square hears the means of the 1 x 1, 2 x 2 and 4 x 4 cells it lies in   (Zhao et al. 2017)
     up      16 x 16 x 16 -> 16 x 16 x 64, the four quads of the square; added to a map of the stem, ReLU

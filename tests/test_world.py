@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import FLAT, FOUND, room, thing
+from scipy import stats
 
 import gnl
 from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, TV, WALL, class_of
@@ -213,6 +214,17 @@ def test_free_poses_hang_together():
     poses = World(plan).free_poses(500, np.random.default_rng(0))
     assert (poses[:, 0] > 2).all()
     assert poses.shape == (500, 3)
+
+
+def test_free_poses_are_uniform_over_the_free_floor_and_all_around(two_rooms):
+    poses = two_rooms.free_poses(20_000, np.random.default_rng(2))
+    assert stats.kstest(poses[:, 2], stats.uniform(-np.pi, 2 * np.pi).cdf).pvalue > 1e-3
+    x, y = np.meshgrid(np.arange(0.05, 7, 0.1), np.arange(0.05, 4, 0.1), indexing="ij")
+    free = two_rooms.is_reachable(np.stack([x, y], -1).reshape(-1, 2)).reshape(7, 10, 4, 10)
+    expected = free.sum((1, 3)) / free.sum()  # of each square metre, its share of what is free
+    found = np.histogram2d(poses[:, 0], poses[:, 1], [np.arange(8), np.arange(5)])[0] / len(poses)
+    assert expected.max() > 2 * expected.min()
+    assert abs(found - expected).max() < 0.008
 
 
 def test_free_poses_come_from_the_generator_alone(two_rooms):
