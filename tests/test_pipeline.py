@@ -6,34 +6,34 @@ import pytest
 from data_gen.rooms import make_home
 from data_gen.views import training_views
 from gnl import planners, segnet
-from gnl.episode import Senses, race, run_all, train_nnql
+from gnl.episode import Senses, race, run_all
 from gnl.learned import learn_places
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
 
-N_VIEWS, N_EPISODES, SEED = 4000, 500, 3
+N_VIEWS, N_EPISODES, SEED = 5000, 640, 3
 
 
 @pytest.fixture(scope="module")
 def right():
     """Whether the methods are right after the first and after the last look, of the same starts: (n,) bool each."""
-    rng, home = np.random.default_rng(SEED), make_home(801, aliasing=0.0)
+    rng, home = np.random.default_rng(SEED), make_home(800)
     grid, robot, net = PlaceGrid(home), Robot(home), segnet.new_params(rng)
     segnet.train(net, *training_views(8, 480, SEED), rng, epochs=4)
     senses = Senses(home, net, None)
     senses.gcn = learn_places(senses, grid, N_VIEWS, SEED, epochs=15, batch=64, rate=0.008)
     task = senses, robot, grid
     sequences, _ = race(*task, home.free_poses(60, rng), SEED)
-    store = train_nnql(*task, home.free_poses(256, rng), SEED)
-    plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours": planners.greedy(store)}
     starts = home.free_poses(N_EPISODES, rng)
-    records = {name: run_all(*task, plan, starts, SEED + 9).correct for name, plan in plans.items()}
-    first, *others = (record[:, 0] for record in records.values())
-    assert all((first == other).all() for other in others)  # the first look is the same for all
-    return {"SV": first, **{name: record[:, -1] for name, record in records.items()}}
+    mv, scan = (run_all(*task, plan, starts, SEED + 9).correct
+                for plan in (planners.chance, planners.scan(sequences[0])))
+    assert (mv[:, 0] == scan[:, 0]).all()  # the first look is the same for all
+    return {"SV": mv[:, 0], "MV": mv[:, -1], "Scan": scan[:, -1]}
 
 
-# Right place of 360, in percent, and margins in standard errors of the paired difference:
+# Right place of 300, in percent, and margins in standard errors of the paired difference:
+#   seed 3          SV 18, MV 26, Scan 39;              MV - SV 4.5, Scan - MV 6.6
+#   seeds 0 to 2    SV 30-32, MV 37-38, Scan 46-48;     MV - SV 2.7-3.6, Scan - MV 4.0-4.7
 
 @pytest.mark.parametrize(("worse", "better"), [("SV", "MV"), ("MV", "Scan")])
 def test_who_looks_again_is_right_more_often_and_who_looks_around_most_often(right, worse, better):
@@ -44,4 +44,4 @@ def test_who_looks_again_is_right_more_often_and_who_looks_around_most_often(rig
 
 
 def test_one_view_is_far_better_than_chance(right):
-    assert right["SV"].mean() > 0.1  # chance: 1 / 360
+    assert right["SV"].mean() > 0.1  # chance: 1 / 300

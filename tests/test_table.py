@@ -16,8 +16,8 @@ from gnl import files, table
 from gnl.__main__ import main
 from gnl.experiment import Cell
 
-TINIEST = table.Settings(episodes=10, tests=4, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=600,
-                          gcn_epochs=8, gcn_rate=0.01)
+TINIEST = table.Settings(episodes=10, tests=10, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=1200,
+                          gcn_epochs=12, gcn_rate=0.01)
 OPTIONS = ["--quick", "--worlds", "800", "801", "--gaps", "1.0/90", "--noise", "0.5"]
 NAMES = ["800-1m-90deg-seed0", "801-1m-90deg-seed0"]
 
@@ -69,8 +69,8 @@ def test_every_cell_is_a_file_with_all_that_is_needed_to_judge_it(reference):
         assert len(result["sequence"]) == 4
         assert result["settings"]["noise"] == 0.5
         assert len(result["checkpoints"]) == len(result["validation"]) == 10
-        for outcome, n in [(o, 4) for o in (*result["tests"].values(), *result["checkpoints"])] + [
-                (o, 2) for o in result["validation"]]:
+        for outcome, n in [(o, TINIEST.tests) for o in (*result["tests"].values(), *result["checkpoints"])] + [
+                (o, TINIEST.validation) for o in result["validation"]]:
             assert [len(look) for look in outcome["place"]] == [n] * 5
             for right, where in zip(outcome["place"], outcome["location"], strict=True):
                 assert set(right) <= {"0", "1"}
