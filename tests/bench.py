@@ -6,7 +6,9 @@ is asserted. Rivals that are not installed (`pip install -e .[bench]`) are not c
 """
 
 import importlib
+import itertools
 import time
+from types import SimpleNamespace
 
 import numpy as np
 from scipy import ndimage
@@ -171,16 +173,18 @@ def neighbours(table, rng):
 
 
 def steps(table, world, rng):
-    """A step of robots that learn, all stages, with much to remember beside one with little."""
-    grid = PlaceGrid(world)
-    senses = episode.Senses(world, segnet.new_params(rng), gcn.GCN(grid.n_places, rng))
-    robot, starts = Robot(world), world.free_poses(64, rng)
+    """A step of robots that learn, all stages, with much to remember beside one with little; what they see is new."""
+    grid, robot, starts = PlaceGrid(world), Robot(world), world.free_poses(64, rng)
+    net, classifier = segnet.new_params(rng), gcn.GCN(grid.n_places, rng)
 
     def with_pairs(n):
-        store = NNQL(grid.n_places, N_ACTIONS)
-        for a, states in enumerate(np.array_split(views_like(n, grid.n_places, rng), N_ACTIONS)):
-            store.index[a].add(states)
-            store.values[a] = np.zeros(len(states))
+        store, states = NNQL(grid.n_places, N_ACTIONS), views_like(n + 64 * 100, grid.n_places, rng)
+        for a, of_action in enumerate(np.array_split(states[:n], N_ACTIONS)):
+            store.index[a].add(of_action)
+            store.values[a] = np.zeros(len(of_action))
+        unseen = itertools.cycle(states[n:].reshape(-1, 64, grid.n_places))
+        taught = SimpleNamespace(scores=lambda graphs: (classifier.scores(graphs), next(unseen))[1])
+        senses = episode.Senses(world, net, taught)
         return lambda: episode.train_nnql(senses, robot, grid, starts, 0, store=store)
 
     table.race("a step of 64 learners, 40,000 pairs", with_pairs(40_000), 64 * 5,
