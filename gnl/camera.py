@@ -42,19 +42,21 @@ class Surfaces:
         return of_box[self.face // FACES].take(self.run_surface), self.run_length
 
 
-def render(world, poses, rng, size=SIZE_PX, noise=1.0):
+def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
     """First-person views and their true labels: poses (B, 3) -> rgb (B, H, H, 3) uint8, labels (B, H, H) uint8.
 
-    size  : H; 64 gives the same view at an eighth of the resolution
-    noise : appearance noise of the photograph (see photo.py); 0 is a clean drawing
+    size   : H; 64 gives the same view at an eighth of the resolution
+    noise  : appearance noise of the photograph (see photo.py); 0 is a clean drawing
+    wanted : (B,) bool, the poses whose views are asked for, all if not given; they look as they would among all
     """
     poses = np.asarray(poses, float)
-    rgb, runs = np.empty((len(poses), size, size, 3), np.uint8), []
+    wanted, rgb, runs = np.ones(len(poses), bool) if wanted is None else wanted, [], []
     for part in _chunks(len(poses), size):
-        surfaces = look(world, poses[part], size)
-        rgb[part] = photograph(world, poses[part], surfaces, size, HEIGHT_M, rng, noise)
+        seen = poses[part][wanted[part]]
+        surfaces = look(world, seen, size)
+        rgb.append(photograph(world, seen, surfaces, size, HEIGHT_M, rng, noise, wanted[part]))
         runs.append(surfaces.labels(world))
-    return rgb, _paint(runs, size)
+    return np.concatenate(rgb), _paint(runs, size)
 
 
 def true_labels(world, poses, size=SIZE_PX):

@@ -16,6 +16,7 @@ from .places import PlaceGrid
 from .ranks import reciprocal_ranks
 from .robot import ACTIONS, Robot
 from .scene_graph import scene_graph
+from .senses import Senses
 from .strip import cast
 from .terminal import Stage, processes
 from .world import World
@@ -87,7 +88,7 @@ def learn(args, scale, helper, world, grid, robot):
     done(stage, f"labels of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
 
     stage = Stage("gcn")
-    senses = episode.Senses(world, net, None, args.noise)
+    senses = Senses(world, net, None, args.noise)
     settings = {"plan": learned.digest(world.plan), "noise": args.noise,
                 "net": learned.digest([views_made_by, scale.net_epochs, args.seed])}
     # In few epochs more is learned at twice the rate that the paper's would be for as large a batch.

@@ -6,61 +6,18 @@ gives an answer: the place that most of the belief lies in.
     B episodes side by side   L cycles after the first view   K places
 """
 
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from . import nnql, planners, segnet
-from .camera import render
+from . import nnql, planners
 from .nn import softmax
 from .particles import FLOOR, ParticleFilter
 from .ranks import reciprocal_ranks
-from .scene_graph import join, scene_graph
 
 LENGTH = 4
 SIDE_BY_SIDE = 64  # episodes in lockstep: some fifty calls of NumPy cost the same for one as for many
-
-
-@dataclass
-class Senses:
-    """From poses to scores of places: camera, segmentation net, scene graph, GCN. Counts the seconds of each."""
-
-    world: object
-    net: dict | None  # weights of the segmentation net; None: true labels
-    gcn: object  # anything with scores(SceneGraphs) -> (B, K)
-    noise: float = 1.0
-    seconds: dict = field(default_factory=dict)
-    views: int = 0
-
-    def look(self, poses, rng):
-        """What robots at `poses` (B, 3) see, as SceneGraphs."""
-        rgb, labels = self.timed("view", render, self.world, poses, rng, segnet.SIZE_PX, self.noise)
-        if self.net is not None:
-            labels = self.timed("labels", segnet.predict, self.net, rgb)
-        self.views += len(poses)
-        return self.timed("graph", scene_graph, labels)
-
-    def look_around(self, poses, rng, progress=None, at_once=128):
-        """The same for any number of poses, some at once; progress(share done)."""
-        parts = []
-        for i in range(0, len(poses), at_once):
-            parts.append(self.look(poses[i:i + at_once], rng))
-            if progress:
-                progress(min(1, (i + at_once) / len(poses)))
-        return join(parts)
-
-    def scores(self, poses, rng):
-        """Scores of all places for the view from each pose: (B, 3) -> (B, K)."""
-        return self.timed("GCN", self.gcn.scores, self.look(poses, rng))
-
-    def timed(self, stage, function, *args):
-        """function(*args), its time booked on `stage`."""
-        start = time.perf_counter()
-        result = function(*args)
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start
-        return result
 
 
 # What the paper leaves open in an episode: each of these is one way to close it, and Rules says which holds.

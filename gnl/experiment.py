@@ -26,6 +26,7 @@ from .options import Experience, Options
 from .outcomes import outcomes
 from .places import PlaceGrid
 from .robot import Robot
+from .senses import SharedSenses
 
 N_CHECKPOINTS = 10
 RACE_STARTS = 240  # training starts over which the fixed sequences race
@@ -70,21 +71,23 @@ def run_cell(cell, senses, starts, settings=None):
     sequences, worth = episode.race(senses, robot, grid, training[:RACE_STARTS], racing)
     options = senses.timed("options", Options, lived, sequences, worth)
 
-    def test(plan, poses, seed):
-        return outcomes(grid, episode.run_all(senses, robot, grid, plan, poses, seed))
+    def test(plans, poses, seed):  # all from the same starts with the same luck
+        shared = SharedSenses(senses)
+        return {name: outcomes(grid, episode.run_all(shared, robot, grid, plan, poses, seed))
+                for name, plan in plans.items()}
 
     plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours+": planners.go_on(options)}
-    tests = {name: test(plan, starts["tests"], testing) for name, plan in plans.items()}
-    past = [planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)]
+    past = {i: planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)}
+    tests = test({**plans, **past}, starts["tests"], testing)
     known = training[np.linspace(0, len(training) - 1, len(starts["tests"])).astype(int)]
-    by_heart = {name: test(plan, known, rehearsing) for name, plan in
-                {"MV": plans["MV"], "Scan": plans["Scan"], "Ours": past[-1]}.items()}
+    by_heart = {"MV": plans["MV"], "Scan": plans["Scan"], "Ours": past[N_CHECKPOINTS - 1]}
     made_from = {"home": learned.digest(senses.world.plan), "gcn": learned.fingerprint(senses.gcn.params),
                  "net": senses.net and learned.fingerprint(senses.net)}
     result = {"name": cell.name, "cell": asdict(cell), "settings": settings, "made from": made_from,
-              "sequence": sequences[0].tolist(), "tests": tests, "from training starts": by_heart,
-              "checkpoints": [test(plan, starts["tests"], testing) for plan in past],
-              "validation": [test(plan, starts["validation"], validating) for plan in past]}
+              "sequence": sequences[0].tolist(), "tests": {name: tests[name] for name in plans},
+              "from training starts": test(by_heart, known, rehearsing),
+              "checkpoints": [tests[i] for i in past],
+              "validation": list(test(past, starts["validation"], validating).values())}
     return result, {**costs(senses, began, sum(map(len, store.values))), "of training": of_training}
 
 

@@ -17,6 +17,7 @@ from .places import PlaceGrid
 from .ranks import ranks
 from .robot import Robot
 from .scene_graph import join
+from .senses import Senses
 
 
 def digest(settings):
@@ -107,7 +108,7 @@ def quick_senses(world, n_views=2000, seed=0):
 
     It learns in 64 bits, so that rounding decides nothing, and from poses that default_rng(seed) does not draw.
     """
-    grid, senses = PlaceGrid(world), episode.Senses(world, None, None, noise=0)
+    grid, senses = PlaceGrid(world), Senses(world, None, None, noise=0)
     senses.gcn = learn_places(senses, grid, n_views, [seed, 1], dtype=float, epochs=10, batch=64, rate=0.01)
     return senses
 

@@ -43,7 +43,7 @@ def linear_forward(x, w, b=None):
     out = (x.reshape(len(x), -1, len(w)) if x.ndim > 2 else x) @ w  # a product for each image, not for each of its rows
     if b is not None:
         out += b
-    return out.reshape(*x.shape[:-1], -1), (x, w)
+    return out.reshape(*x.shape[:-1], w.shape[1]), (x, w)
 
 
 def linear_backward(dout, cache):

@@ -25,18 +25,16 @@ GRAIN = np.array([.03, .10, .02, .05, .10, .12, .08, .01, .01, .08])
 FARTHEST_M = 30
 
 
-def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
+def photograph(world, poses, surfaces, size, height_m, rng, noise, wanted):
     """Colours of views: poses (B, 3) and what they show -> rgb (B, H, C, 3) uint8.
 
-    Draws the same random numbers whatever there is to see. Most of the time goes into passes over all pixels: so
-    there are few, each works in place, and all that the pixels of a run share is computed once for each run.
+    wanted : (n,) bool, which of n views these B are: they get the luck that they have among all n
+
+    Most of the time goes into passes over all pixels: so there are few, each works in place, and all that the pixels
+    of a run share is computed once for each run.
     """
     B, H, f = len(poses), size, np.float32
-    exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((B, 1)))
-    exposure = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((B, 3)))
-    across, down = (noise * GRADIENT_STD * rng.standard_normal((2, B, 1, 1))).astype(f)
-    grit = rng.integers(2 ** 64, size=(3, -(-B * H * H // 8)), dtype=np.uint64).view(np.int8)  # eight a draw
-    grit = grit[:, :B * H * H].reshape(3, B, H, H)
+    exposure, across, down, grit = (of_all[wanted] for of_all in _luck(len(wanted), H, rng, noise))
 
     near, near_up, phase, ahead, upward, contrast, *colours = _of_runs(world, poses, surfaces, exposure, H, height_m)
     up = slopes(H).astype(f)  # up / ahead of each row
@@ -76,10 +74,23 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise=1.0):
     for c in range(3):
         colour = pixels(colours[c])  # albedo * facing * exposure
         colour *= light  # * distance * gradient * texture
-        colour += grit[c] * f(noise * SENSOR)  # + sensor
+        colour += grit[:, c] * f(noise * SENSOR)  # + sensor
         np.clip(colour, 0, 255, out=colour)
         rgb[..., c] = colour.astype(np.uint8).transpose(0, 2, 1)
     return rgb
+
+
+def _luck(n_views, size, rng, noise):
+    """What chance gives to n views: exposure (n, 3), gradient across and down (n, 1, 1) each, grit (n, 3, H, H) int8.
+
+    Light and exposure are drawn before the pixels, so that views of another size have the same.
+    """
+    n, pixels = n_views, n_views * size * size
+    exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((n, 1)))
+    exposure = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((n, 3)))
+    across, down = (noise * GRADIENT_STD * rng.standard_normal((2, n, 1, 1))).astype(np.float32)
+    grit = rng.integers(2 ** 64, size=(3, -(-pixels // 8)), dtype=np.uint64).view(np.int8)  # eight a draw
+    return exposure, across, down, grit[:, :pixels].reshape(3, n, size, size).swapaxes(0, 1)
 
 
 def _of_runs(world, poses, surfaces, exposure, size, height_m):

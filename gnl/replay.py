@@ -14,11 +14,12 @@ from PIL import Image
 
 from . import canvas, draw
 from .camera import render
-from .episode import Senses, run
+from .episode import run
 from .files import write_whole
 from .floor_map import Map
 from .places import wrap_angle
 from .robot import ACTIONS
+from .senses import Senses
 
 WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX, GAP_PX = 830, 566, (412, 412), 192, 10  # GitHub's pages are 830
 KEY = {"robot": "robot", "sight": "its view", "particles": "particles", "right": "answer, right", "wrong": "or wrong"}
@@ -53,7 +54,7 @@ class Witness(Senses):
     def timed(self, stage, function, *args):
         """function(*args), remembered."""
         if stage == "view":  # light and exposure are drawn before the pixels: the large photograph is the same
-            world, poses, rng, _, noise = args
+            world, poses, rng, _, noise, _ = args
             self.latest["large"] = render(world, poses, copy.deepcopy(rng), VIEW_PX, noise)[0]
         self.latest[stage] = function(*args)
         return self.latest[stage]

@@ -10,13 +10,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from . import learned
-from .episode import Senses
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from .files import load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
 from .outcomes import arrays
 from .paper import WORLDS
 from .photo import check_noise
+from .senses import Senses
 from .terminal import Stage, processes
 from .world import World
 

@@ -23,6 +23,7 @@ from gnl.places import PlaceGrid
 from gnl.rank_index import RankIndex
 from gnl.robot import N_ACTIONS, Robot
 from gnl.scene_graph import regions, scene_graph
+from gnl.senses import Senses
 from gnl.strip import cast
 from tests.bench_data import ray_loop, views_like
 
@@ -184,7 +185,7 @@ def steps(table, world, rng):
             store.values[a] = np.zeros(len(of_action))
         unseen = itertools.cycle(states[n:].reshape(-1, 64, grid.n_places))
         taught = SimpleNamespace(scores=lambda graphs: (classifier.scores(graphs), next(unseen))[1])
-        senses = episode.Senses(world, net, taught)
+        senses = Senses(world, net, taught)
         return lambda: episode.train_nnql(senses, robot, grid, starts, 0, store=store)
 
     table.race("a step of 64 learners, 40,000 pairs", with_pairs(40_000), 64 * 5,

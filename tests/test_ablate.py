@@ -16,12 +16,13 @@ from gnl import ablate, camera, episode, gcn, learned, nnql, particles, planners
 from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
-from gnl.episode import Rules, Senses
+from gnl.episode import Rules
 from gnl.experiment import to_bytes
 from gnl.files import write_whole
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion
+from gnl.senses import Senses
 from gnl.table import Settings, path_of
 
 PAGE = Path(__file__).parents[1] / "tutorials" / "open_points.md"

@@ -13,11 +13,12 @@ import pytest
 import gnl
 from data_gen.rooms import make_home
 from gnl import episode, planners
-from gnl.episode import Record, Rules, Senses, probability, run, run_all, train_nnql
+from gnl.episode import Record, Rules, probability, run, run_all, train_nnql
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid, wrap_angle
 from gnl.ranks import reciprocal_ranks
 from gnl.robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
+from gnl.senses import Senses
 
 GRID = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
 K = GRID.n_places

@@ -10,13 +10,13 @@ import pytest
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
 from gnl import episode, planners
-from gnl.episode import Senses
 from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from gnl.gcn import GCN
 from gnl.learned import digest, fingerprint
 from gnl.outcomes import arrays, outcomes, right
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
+from gnl.senses import Senses
 
 CELL = Cell(800, 0.2, 10, 3)
 N_TRAINING, N_TESTS, N_VALIDATION = 20, 12, 4

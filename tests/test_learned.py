@@ -7,12 +7,12 @@ import pytest
 
 from data_gen.rooms import make_home
 from gnl import episode, gcn, learned, segnet
-from gnl.episode import Senses
 from gnl.files import load_arrays, save_arrays
 from gnl.gcn import GCN
 from gnl.nnql import NNQL
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
+from gnl.senses import Senses
 
 STARTS = np.array([[1.0, 2, 0], [3, 2, 1]])
 VIEWS = np.random.default_rng(0).integers(0, 256, (16, 64, 64, 3), np.uint8), np.zeros((16, 64, 64), np.uint8)

@@ -6,10 +6,11 @@ import pytest
 from data_gen.rooms import make_home
 from data_gen.views import training_views
 from gnl import planners, segnet
-from gnl.episode import Senses, race, run_all
+from gnl.episode import race, run_all
 from gnl.learned import learn_places
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
+from gnl.senses import Senses
 
 N_VIEWS, N_EPISODES, SEED = 5000, 640, 3
 

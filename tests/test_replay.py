@@ -9,6 +9,7 @@ from gnl.gcn import GCN
 from gnl.nnql import NNQL
 from gnl.places import PlaceGrid
 from gnl.robot import N_ACTIONS, Robot
+from gnl.senses import Senses
 from gnl.world import World
 
 PLAN = {"name": "six by four", "walls": [[0, 0, 6, 0], [6, 0, 6, 4], [6, 4, 0, 4], [0, 4, 0, 0]],
@@ -22,7 +23,7 @@ def parts():
     world = World(PLAN)
     grid = PlaceGrid(world)
     rng = np.random.default_rng(0)
-    senses = episode.Senses(world, segnet.new_params(rng), GCN(grid.n_places, rng, hidden=8))
+    senses = Senses(world, segnet.new_params(rng), GCN(grid.n_places, rng, hidden=8))
     return world, grid, Robot(world), senses
 
 
