@@ -84,12 +84,13 @@ class ParticleFilter:
         M weight up to i - 1 and up to i.
         """
         B, M = self.weight.shape
-        u = self.rng.random(B)
+        u, particles = self.rng.random(B), np.arange(M)
         for b in range(B):
             total = self.weight[b].cumsum(dtype=float)
-            mark = np.ceil(total * (M / total[-1]) - u[b]).astype(int)  # copies of particles up to this one
-            mark[-1] = M  # rounding must not lose the last one
-            drawn = np.bincount(mark)[:M].cumsum()  # copy j is of the first particle whose mark exceeds j
+            copies = np.ceil(total * (M / total[-1]) - u[b]).astype(int)  # of all particles up to this one
+            copies[-1] = M  # rounding must not lose the last one
+            copies[1:] -= copies[:-1]  # of this one
+            drawn = particles.repeat(copies)
             for of_particle in (self.x, self.y, self.theta, self.place):
                 of_particle[b] = of_particle[b].take(drawn)
         self.weight = np.full((B, M), 1 / M, np.float32)

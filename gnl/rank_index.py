@@ -142,25 +142,15 @@ class RankIndex:
 
     def _settle(self, queries, who, rows, k, n_first):
         """Of the rows found for each query, and the copies of each, the k best points by exact distance."""
-        distances, ids = np.full((len(queries), k), np.inf), np.full((len(queries), k), -1)
-        if not rows:
-            return distances, ids
-        points = [self._oldest[row] for row in rows]
-        who, rows = np.array(who), np.array(rows)
-        exact = lengths(self._rows.take(rows, 0) - queries.take(who, 0).astype(float))
-        if self._copies:
-            points = [[i for i in self._copies.get(oldest, [oldest])[:k] if i < n_first] for oldest in points]
-            copies = [len(equal) for equal in points]
-            who, exact, points = who.repeat(copies), exact.repeat(copies), [i for equal in points for i in equal]
-        points = np.array(points)
-
-        order = np.lexsort((points, exact, who))  # query by query, the nearest first, the older of equals first
-        who, exact, points = who[order], exact[order], points[order]
-        column = np.arange(len(who)) - who.searchsorted(who)
-        best = column < k
-        where = who[best], column[best]
-        distances[where], ids[where] = exact[best], points[best]
-        return distances, ids
+        exact = lengths(self._rows.take(rows, 0) - queries.take(who, 0).astype(float)).tolist() if rows else []
+        near = [[] for _ in queries]  # (distance, point), few of each query
+        for i, row, distance in zip(who, rows, exact, strict=True):
+            oldest = self._oldest[row]
+            near[i] += [(distance, point) for point in self._copies.get(oldest, (oldest,))[:k] if point < n_first]
+        # The nearest first, the older of equals first.
+        best = [sorted(points)[:k] + [(np.inf, -1)] * (k - len(points)) for points in near]
+        best = np.array(best).reshape(-1, k, 2)
+        return best[..., 0], best[..., 1].astype(int)
 
     def _find(self, vector):
         key = vector.tobytes()
