@@ -144,6 +144,19 @@ def test_many_views_are_rendered_as_each_would_alone(home):
 
 
 @pytest.mark.parametrize("size", [64, 512])
+def test_views_that_are_wanted_are_those_among_all_and_the_luck_of_the_others_is_spent(two_rooms, size):
+    rng = np.random.default_rng(0)
+    poses = two_rooms.free_poses(150 if size == 64 else 20, rng)  # more than are rendered at once
+    wanted, luck = rng.random(len(poses)) < 0.3, np.random.default_rng(5)
+    everything = render(two_rooms, poses, luck, size)
+    for some in (wanted, ~wanted, np.zeros(len(poses), bool)):
+        again = np.random.default_rng(5)
+        for of_all, of_some in zip(everything, render(two_rooms, poses, again, size, wanted=some), strict=True):
+            np.testing.assert_array_equal(of_some, of_all[some])
+        assert again.bit_generator.state == luck.bit_generator.state
+
+
+@pytest.mark.parametrize("size", [64, 512])
 def test_true_labels_are_those_of_the_rendered_view(home, size):
     poses = home.free_poses(3, np.random.default_rng(4))
     rgb, labels = render(home, poses, np.random.default_rng(0), size)

@@ -227,21 +227,3 @@ def test_the_rules_of_an_episode_are_those_that_are_given():
             lambda step, **what: pooled.append(what["pooled"]))
     assert (pooled[0] >= pooled[5] - 1e-6).all()
     assert pooled[0].sum() > 2 * pooled[5].sum()
-
-
-def test_senses_book_the_seconds_of_each_stage():
-    senses, robot, grid = home_of()
-    run(senses, robot, grid, planners.chance, senses.world.free_poses(3, np.random.default_rng(0)), 0)
-    assert senses.views == 3 * (1 + episode.LENGTH)
-    assert set(senses.seconds) == {"view", "graph", "GCN", "filter", "plan", "robot", "ranks"}
-    assert all(seconds >= 0 for seconds in senses.seconds.values())
-
-
-def test_a_look_around_is_the_looks_one_after_the_other():
-    senses, _, _ = home_of()
-    poses, told = senses.world.free_poses(10, np.random.default_rng(0)), []
-    around = senses.look_around(poses, np.random.default_rng(1), told.append, at_once=4)
-    at_once = senses.look(poses, np.random.default_rng(1))
-    for name in vars(at_once):
-        np.testing.assert_array_equal(getattr(around, name), getattr(at_once, name))
-    assert told == [0.4, 0.8, 1]

@@ -82,8 +82,7 @@ def test_what_is_learned_never_comes_from_a_test_nor_a_choice_from_a_test_or_its
     starts, given = parts[1], lived[2]
     np.testing.assert_array_equal(given["train_nnql"][0][0], starts["training"])
     np.testing.assert_array_equal(given["race"][0][0], starts["training"])
-    tests, known, past, validation = np.split(np.array(given["run_all"], object), [3, 6, 6 + N_CHECKPOINTS])
-    tests = [*tests, *past]
+    tests, known, validation = np.split(np.array(given["run_all"], object), [3 + N_CHECKPOINTS, 6 + N_CHECKPOINTS])
     assert all(np.array_equal(poses, starts["tests"]) for poses, _ in tests)
     assert all(np.array_equal(poses, starts["validation"]) for poses, _ in validation)
     luck = [{seed.spawn_key for _, seed in calls}
@@ -142,7 +141,6 @@ def test_outcomes_and_costs_can_be_written_and_read(lived):
     assert json.loads(to_bytes(result)) == result
     assert json.loads(to_bytes(costs)) == costs
     assert to_bytes({"b": 1, "a": 2}) == to_bytes({"a": 2, "b": 1})
-    assert costs["views"] > 5 * sum(len(poses) for poses, _ in given["train_nnql"] + given["run_all"])
     assert 0 < sum(costs["of stages"].values()) < costs["seconds"] < 100
     assert 0 < costs["of processor"] < 100
     assert costs["of training"]["views"] == 5 * sum(len(poses) for poses, _ in given["train_nnql"])
