@@ -80,5 +80,8 @@ def check_params(path, params, wanted):
         found = params[name].shape if name in params else "nothing"
         if expected != found:
             raise ValueError(f"{path}: {name}: expected shape {expected}, found {found}")
-        if not (np.issubdtype(params[name].dtype, np.floating) and np.isfinite(params[name]).all()):
-            raise ValueError(f"{path}: {name}: expected finite numbers, found other {params[name].dtype}")
+        values = params[name]
+        if not np.issubdtype(values.dtype, np.floating):
+            raise ValueError(f"{path}: {name}: expected floating-point numbers, found {values.dtype}")
+        if not np.isfinite(values).all():
+            raise ValueError(f"{path}: {name}: expected finite numbers, found {values[~np.isfinite(values)][0]}")

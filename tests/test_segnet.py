@@ -165,7 +165,8 @@ def test_a_saved_net_is_read_back_as_it_was(tmp_path):
 @pytest.mark.parametrize(("change", "complaint"), [
     ({"head.w": np.zeros((3, 4))}, r"net\.npz: head\.w: expected shape \(16, 40\), found \(3, 4\)"),
     ({"head.w": None}, r"net\.npz: head\.w: expected shape \(16, 40\), found nothing"),
-    ({"head.w": np.full((16, 40), np.nan)}, r"net\.npz: head\.w: expected finite numbers, found other float64"),
+    ({"head.w": np.full((16, 40), np.nan)}, r"net\.npz: head\.w: expected finite numbers, found nan"),
+    ({"head.w": np.ones((16, 40), int)}, r"net\.npz: head\.w: expected floating-point numbers, found int64"),
     ({"tail.w": np.zeros(2)}, r"net\.npz: tail\.w: expected shape nothing, found \(2,\)"),
 ])
 def test_a_file_that_does_not_fit_is_refused(tmp_path, change, complaint):
