@@ -17,9 +17,9 @@ import numpy as np
 from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
-from .experiment import Cell, costs, now
-from .files import load_arrays, write_whole
-from .outcomes import arrays, outcomes
+from .experiment import Cell, costs, now, to_bytes
+from .files import load_arrays, load_json, write_whole
+from .outcomes import answers, outcomes
 from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
@@ -51,9 +51,10 @@ def run(args):
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
     page = args.page and Path(args.page).read_text(encoding="utf-8")
     out = Path(args.out)
-    agree(out / "settings.json", asdict(SETTINGS))
+    agree(out, asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
-    todo = {name: job for name, job in jobs.items() if not finished(out, name)}
+    todo = {name: job for name, job in jobs.items() if not finished(out, name, load)}
+    write_whole(out / "settings.json", to_bytes(asdict(SETTINGS)))
     if todo:
         with executor(args.jobs) as pool:
             senses = prepare(out, SETTINGS, CELLS, args.jobs, pool)
@@ -65,6 +66,17 @@ def run(args):
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
     if page:
         write_whole(args.page, filled(page, measured).encode())
+
+
+def load(path):
+    """Outcomes and costs of a run from its two files; ValueError if they are not whole."""
+    def look(result):
+        if result["name"] != path.stem:
+            raise ValueError(f"those of {result['name']}")
+        answers(result["tests"]["MV"]), answers(result["tests"]["Ours"])
+
+    return (load_json(path, "the outcomes of a run", look),
+            load_json(path.parents[1] / "costs" / path.name, "the costs of a run"))
 
 
 def name_of(choice, cell):
@@ -113,7 +125,7 @@ def effects(out, chosen):
     """What MV and Ours get right more often with each choice than beside it, in points: rows of words."""
     def right(choice, method):
         parts = [json.loads(path_of(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
-        return np.concatenate([arrays(part["place"])[:, -1] for part in parts])
+        return np.concatenate([answers(part) for part in parts])
 
     rows = []
     for choice in chosen:

@@ -22,8 +22,9 @@ from importlib.metadata import version
 import numpy as np
 
 from . import episode, learned, planners
+from .files import load_json
 from .options import Experience, Options
-from .outcomes import outcomes
+from .outcomes import curve, from_training, outcomes, right
 from .places import PlaceGrid
 from .robot import Robot
 from .senses import SharedSenses
@@ -103,6 +104,26 @@ def costs(senses, began, n_pairs):
             "peak MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
             "versions": {"python": platform.python_version(), **{name: version(name) for name in
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}
+
+
+def load_cell(path):
+    """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
+    def look(result):
+        curve([result]), right(result), from_training(result)
+        name = Cell(**result["cell"]).name
+        if name != path.stem:
+            raise ValueError(f"those of {name}")
+        if not len(result["checkpoints"]) == len(result["validation"]) == N_CHECKPOINTS:
+            raise ValueError(f"{len(result['checkpoints'])} checkpoints, {len(result['validation'])} validated")
+
+    def look_at_costs(costs):
+        numbers = [costs["peak MB"], costs["of training"]["seconds"], *costs["of stages"].values()]
+        if not (sum(numbers) >= costs["of stages"]["graph"] and costs["seconds"] / costs["views"] > 0):
+            raise ValueError("costs below zero")
+        dict(costs["versions"]), str(costs["machine"])
+
+    return (load_json(path, "the outcomes of a cell", look),
+            load_json(path.parents[1] / "costs" / path.name, "the costs of a cell", look_at_costs))
 
 
 def to_bytes(value):

@@ -62,14 +62,22 @@ def load_arrays(path):
     return arrays, made_by
 
 
-def load_json(path, what):
-    """The dict in a JSON file; ValueError that names the file, and `what` it should hold."""
+def load_json(path, what, look=None):
+    """The dict in a JSON file; ValueError that names the file, and `what` it should hold.
+
+    look(dict) may use what should be there: whatever goes wrong there is wrong with the file.
+    """
     try:
         found = json.loads(Path(path).read_bytes())
     except (OSError, ValueError) as error:
         raise ValueError(f"{path}: expected {what}, found {error}") from None
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected {what}, found a {type(found).__name__}")
+    try:
+        if look:
+            look(found)
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError, ZeroDivisionError) as error:
+        raise ValueError(f"{path}: expected {what}, found {error!r}") from None
     return found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import draw, draw_charts
 from .compare import episodes_needed, in_points, mcnemar, over_cells
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, load_cell
 from .files import load_json, write_whole
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
@@ -55,25 +55,6 @@ def load(out):
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
     return *map(list, zip(*cells, strict=True)), settings
-
-
-def load_cell(path):
-    """Outcomes and costs of one cell."""
-    def looked_through(file, what, look):
-        found = load_json(file, what)
-        try:
-            look(found)
-        except (ValueError, KeyError, TypeError, IndexError, AttributeError, ZeroDivisionError) as error:
-            raise ValueError(f"{file}: expected {what}, found {error!r}") from None
-        return found
-
-    def look(result):
-        curve([result]), right(result), from_training(result), Cell(**result["cell"])
-        if len(result["checkpoints"]) != N_CHECKPOINTS:
-            raise ValueError(f"{len(result['checkpoints'])} checkpoints")
-
-    return (looked_through(path, "the outcomes of a cell", look),
-            looked_through(path.parents[1] / "costs" / path.name, "the costs of a cell", lambda costs: cost([costs])))
 
 
 def sections(results, costs, settings):

@@ -1,6 +1,5 @@
 """Table I: all cells on all cores, each finished one a file; a run that was stopped goes on where it was."""
 
-import json
 import os
 import subprocess
 import sys
@@ -10,10 +9,9 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from . import learned
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, load_cell, run_cell, to_bytes
 from .files import load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
-from .outcomes import arrays
 from .paper import WORLDS
 from .photo import check_noise
 from .senses import Senses
@@ -64,8 +62,9 @@ def run(args):
     """Run the cells that are not finished yet."""
     settings, cells = check(args)
     out = Path(args.out)
-    agree(out / "settings.json", asdict(settings))
-    todo = [cell for cell in cells if not finished(out, cell.name)]
+    agree(out, asdict(settings))
+    todo = [cell for cell in cells if not finished(out, cell.name, load_cell, asdict(settings))]
+    write_whole(out / "settings.json", to_bytes(asdict(settings)))
     if todo:
         with executor(args.jobs, args.dask) as pool:
             senses = prepare(out, settings, todo, args.jobs, pool)
@@ -157,31 +156,40 @@ def gap_of(name):
     return float(t_xy_m), int(t_theta_deg)
 
 
-def agree(path, settings):
-    """Write the settings of a folder of results; ValueError if it holds results of other ones."""
+def agree(out, settings):
+    """ValueError if a folder of results has other settings."""
+    path = out / "settings.json"
     if path.exists():
-        there = load_json(path, "settings")
-        for name, value in settings.items():
-            if there.get(name) != value:
-                raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
-                                 "name another folder with --out")
-    write_whole(path, to_bytes(settings))
+        check_settings(path, load_json(path, "settings"), settings)
 
 
-def finished(out, name):
-    """Whether the files of a cell are there and its outcomes whole; damaged ones are named and set aside."""
+def check_settings(path, there, settings):
+    """ValueError with the name of a setting that is another one in a file of results."""
+    for name, value in settings.items():
+        if there.get(name) != value:
+            raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
+                             "name another folder with --out")
+
+
+def finished(out, name, load, settings=None):
+    """Whether both files of a cell are there and load(path) finds them whole, and of these settings.
+
+    Damaged ones are named and set aside; of other settings there may be none.
+    """
     path = path_of(out, name)
-    if not (path.exists() and (path.parents[1] / "costs" / path.name).exists()):
+    files = path, path.parents[1] / "costs" / path.name
+    if not all(file.exists() for file in files):
         return False
     try:
-        result = json.loads(path.read_bytes())
-        return result["name"] == name and all(len(arrays(one["place"])) for one in result["tests"].values())
-    except (ValueError, KeyError, TypeError, AttributeError):
-        aside = path.with_suffix(".damaged")
-        os.replace(path, aside)
-        print(f"{path}: expected the outcomes of a cell, found something else; set aside as {aside.name}, done again",
-              file=sys.stderr)
+        result, _ = load(path)
+    except ValueError as error:
+        for file in files:
+            os.replace(file, file.with_suffix(".damaged"))
+        print(f"{error}; set aside as {path.stem}.damaged, done again", file=sys.stderr)
         return False
+    if settings:
+        check_settings(path, result["settings"], settings)
+    return True
 
 
 def path_of(out, name):

@@ -14,7 +14,7 @@ from conftest import begun_by_make, full_disk
 
 from gnl import files, table
 from gnl.__main__ import main
-from gnl.experiment import Cell
+from gnl.experiment import Cell, load_cell, to_bytes
 
 TINIEST = table.Settings(episodes=10, tests=10, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=1200,
                           gcn_epochs=12, gcn_rate=0.01)
@@ -127,13 +127,11 @@ def test_a_cluster_gives_the_same_bytes(reference, prepared):
     assert cells(prepared) == reference.cells
 
 
-def test_a_cell_without_its_costs_is_done_again(reference, prepared):
-    for folder in ("cells", "costs"):
-        shutil.copytree(reference.folder / folder, prepared / folder)
-    (prepared / "costs" / f"{NAMES[0]}.json").unlink()
-    assert main_here(prepared, "--jobs", 1) == 0
-    assert (prepared / "costs" / f"{NAMES[0]}.json").exists()
-    assert cells(prepared) == reference.cells
+def test_a_cell_without_its_costs_is_done_again(reference, done):
+    (done / "costs" / f"{NAMES[0]}.json").unlink()
+    assert main_here(done, "--jobs", 1) == 0
+    assert (done / "costs" / f"{NAMES[0]}.json").exists()
+    assert cells(done) == reference.cells
 
 
 def main_here(out, *options):
@@ -143,19 +141,49 @@ def main_here(out, *options):
     return exit.value.code
 
 
-@pytest.mark.parametrize("damage", ["cut off", "emptied"])
-def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, prepared, capsys, damage):
-    shutil.copytree(reference.folder / "cells", prepared / "cells")
-    shutil.copytree(reference.folder / "costs", prepared / "costs")
-    damaged = prepared / "cells" / f"{NAMES[1]}.json"
-    there = reference.cells[damaged.name][:100] if damage == "cut off" else b'{"name": "%s"}' % NAMES[1].encode()
-    damaged.write_bytes(there)
-    assert main_here(prepared, "--jobs", 1) == 0
+@pytest.fixture
+def done(reference, prepared):
+    """A folder in which all is done."""
+    for folder in ("cells", "costs"):
+        shutil.copytree(reference.folder / folder, prepared / folder)
+    return prepared
+
+
+def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, done, capsys):
+    damaged = done / "cells" / f"{NAMES[1]}.json"
+    damaged.write_bytes(reference.cells[damaged.name][:100])
+    assert main_here(done, "--jobs", 1) == 0
     err = capsys.readouterr().err
     assert err.startswith(f"{damaged}: expected ")
     assert err.count("\n") == 1
-    assert damaged.with_suffix(".damaged").read_bytes() == there
+    assert damaged.with_suffix(".damaged").read_bytes() == reference.cells[damaged.name][:100]
     assert damaged.read_bytes() == reference.cells[damaged.name]
+
+
+@pytest.mark.parametrize(("kind", "change"), [
+    ("cells", {"checkpoints": []}), ("cells", {"tests": {}}), ("cells", {"validation": None}),
+    ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": 70, "seed": 0}}), ("cells", {"cell": "800"}),
+    ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}), ("costs", {"versions": 3}), ("costs", {"views": 0})])
+def test_no_damaged_file_is_taken_for_a_finished_cell_and_both_are_kept(done, capsys, kind, change):
+    files = [done / folder / f"{NAMES[0]}.json" for folder in ("cells", "costs")]
+    assert table.finished(done, NAMES[0], load_cell)
+    damaged = done / kind / f"{NAMES[0]}.json"
+    there = to_bytes(json.loads(damaged.read_bytes()) | change)
+    damaged.write_bytes(there)
+    assert not table.finished(done, NAMES[0], load_cell)
+    what = {"cells": "outcomes", "costs": "costs"}[kind]
+    assert capsys.readouterr().err.startswith(f"{damaged}: expected the {what} of a cell, found ")
+    assert damaged.with_suffix(".damaged").read_bytes() == there
+    assert all(file.with_suffix(".damaged").exists() and not file.exists() for file in files)
+
+
+def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does_not_tell(done, capsys):
+    (done / "settings.json").unlink()
+    assert main_here(done, "--tests", 7) == 2
+    path = done / "cells" / f"{NAMES[0]}.json"
+    assert capsys.readouterr().err == (f"python -m gnl: {path}: expected results of tests 7, found some of 10; "
+                                       "name another folder with --out\n")
+    assert not (done / "settings.json").exists()
 
 
 @pytest.mark.parametrize(("options", "words"), [
