@@ -1,13 +1,12 @@
 """python -m data_gen: write homes and training views to files, for `python -m gnl` to learn from."""
 
-import argparse
 from pathlib import Path
 
 from gnl.draw import save_png
 from gnl.experiment import Cell
 from gnl.files import load_arrays, save_arrays
 from gnl.floor_plan import LARGEST_HOME_M
-from gnl.terminal import Stage, guarded, processes
+from gnl.terminal import Parser, Stage, guarded, processes
 
 from .rooms import make_home
 from .starts import picture, starts_of
@@ -65,7 +64,7 @@ def cell_of(words):
 
 def main(argv=None):
     """Parse the command line and run; exit status 2 and one line for what cannot be done."""
-    parser = argparse.ArgumentParser(prog="python -m data_gen", description=__doc__.partition(": ")[2])
+    parser = Parser(prog="python -m data_gen", description=__doc__.partition(": ")[2])
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     command = commands.add_parser("home", help="draw a procedural home")
     command.add_argument("out", help="floor plan to write (.json)")

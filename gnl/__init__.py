@@ -1,1 +1,8 @@
 """gnl, the graph neural localizer: from a first-person view to a place, and on to the next view."""
+
+import os
+
+# One BLAS thread a process: two on two busy cores make a net many times slower. Where NumPy is there already, it stays
+# as it is; the processes beside this one begin without.
+os.environ |= {name: "1" for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+               if name not in os.environ}

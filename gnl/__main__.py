@@ -1,9 +1,7 @@
 """python -m gnl: the command line of the graph neural localizer."""
 
-import argparse
-
 from . import ablate, demo, draw_graph, report, table
-from .terminal import guarded
+from .terminal import Parser, guarded
 
 COMMANDS = {
     "demo": (demo, "learn every stage in a home and let a robot find out where it is"),
@@ -16,7 +14,7 @@ COMMANDS = {
 
 def main(argv=None):
     """Parse the command line and run the command."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m gnl",
         description="The graph neural localizer: where am I, and where should I look next? `make demo` shows it all.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")

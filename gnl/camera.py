@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .classes import CEILING, FLOOR
-from .photo import photograph
+from .photo import check_noise, photograph
+from .places import check_poses
 from .strip import FACES, FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
 
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
@@ -43,14 +44,16 @@ class Surfaces:
 
 
 def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
-    """First-person views and their true labels: poses (B, 3) -> rgb (B, H, H, 3) uint8, labels (B, H, H) uint8.
+    """First-person views and their true labels: poses (B, 3) -> rgb (n, H, H, 3) uint8, labels (n, H, H) uint8.
 
     size   : H; 64 gives the same view at an eighth of the resolution
     noise  : appearance noise of the photograph (see photo.py); 0 is a clean drawing
-    wanted : (B,) bool, the poses whose views are asked for, all if not given; they look as they would among all
+    wanted : (B,) bool, whose views to draw: n of them, each as it would be among all B; all B if not given
     """
-    poses = np.asarray(poses, float)
-    wanted, rgb, runs = np.ones(len(poses), bool) if wanted is None else wanted, [], []
+    poses, rgb, runs = _check(poses, size), [], []
+    check_noise(noise)
+    if wanted is None:
+        wanted = np.ones(len(poses), bool)
     for part in _chunks(len(poses), size):
         seen = poses[part][wanted[part]]
         surfaces = look(world, seen, size)
@@ -61,9 +64,16 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
 
 def true_labels(world, poses, size=SIZE_PX):
     """True labels alone: poses (B, 3) -> (B, H, H) uint8."""
-    poses = np.asarray(poses, float)
+    poses = _check(poses, size)
     parts = _chunks(len(poses), size, 2 * RAYS_AT_ONCE)
     return _paint([look(world, poses[part], size).labels(world) for part in parts], size)
+
+
+def _check(poses, size):
+    """The poses as (B, 3) floats; ValueError if there is no view of that size from them."""
+    if size < 2 or size % 2:
+        raise ValueError(f"size: expected an even number of pixels, found {size}")
+    return check_poses(poses).reshape(-1, 3)
 
 
 def _paint(runs, size):

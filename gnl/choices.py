@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from .episode import Rules
-from .gcn import GCN
+from .gcn import GCN, mean_backward, mean_forward, normalise_adjacency
 from .nn import softmax
 from .nnql import SAME
 from .particles import FLOOR, ParticleFilter
@@ -35,22 +35,22 @@ class Choice:
     luck: bool = False  # the same choice as ours, but another seed of the training
 
 
-def probabilities(scores, _pooled, _actions):
+def probabilities(scores, _particles, _actions):
     """State: probabilities instead of reciprocal ranks."""
     return softmax(scores).astype(np.float32)
 
 
-def best_place(scores, _pooled, _actions):
+def best_place(scores, _particles, _actions):
     """State: the best place alone, one-hot."""
     return np.eye(scores.shape[1], dtype=np.float32)[scores.argmax(1)]
 
 
-def filter_ranks(_scores, pooled, _actions):
+def filter_ranks(scores, particles, _actions, pooling="sum"):
     """State: the reciprocal ranks of the filter's belief instead of the view's."""
-    return reciprocal_ranks(pooled)
+    return reciprocal_ranks(particles.belief(scores.shape[1], pooling))
 
 
-def with_last_action(scores, _pooled, actions):
+def with_last_action(scores, _particles, actions):
     """State: the view's ranks and the last action, one-hot: two actions are 1.4 apart, two views at most 1.8."""
     last = np.zeros((len(scores), N_ACTIONS + 1), np.float32)
     last[np.arange(len(scores)), 0 if actions is None else actions + 1] = 1
@@ -85,11 +85,33 @@ def touching_at_corners(labels):
     return view, label, area, np.stack(boxes, 1)
 
 
+def plain_sums(edges, n_nodes, dtype=np.float32):
+    """A + I: each node sums its neighbours and itself as they are; as gcn.normalise_adjacency."""
+    adjacency = normalise_adjacency(edges, n_nodes, dtype)
+    adjacency.data[:] = 1
+    return adjacency
+
+
+def sum_forward(node_features, starts):
+    """A graph is the sum of its nodes; as gcn.mean_forward."""
+    mean, (count,) = mean_forward(node_features, starts)
+    return mean * count[:, None].astype(mean.dtype), (count,)
+
+
+def sum_backward(dout, cache):
+    """Every node of a graph gets all of it; as gcn.mean_backward."""
+    count, = cache
+    return mean_backward(dout * count[:, None].astype(dout.dtype), cache)
+
+
 class BruteForce:
-    """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them."""
+    """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them.
+
+    In 64 bits: in 32, rounding alone would part a state from itself by more than nnql.SAME.
+    """
 
     def __init__(self, dim):
-        self.points = np.empty((0, dim), np.float32)
+        self.points = np.empty((0, dim))
 
     def add(self, points):
         ids = np.arange(len(self.points), len(self.points) + len(points))
@@ -102,10 +124,10 @@ class BruteForce:
         return np.where(distance[:, 0] <= SAME, found[:, 0], -1)
 
     def query(self, points, k, n_first=None):
-        there = self.points[:n_first]
+        points, there = points.astype(float), self.points[:n_first]
         squares = (points ** 2).sum(1)[:, None] + (there ** 2).sum(1) - 2 * points @ there.T
         order = np.argsort(squares.clip(0), 1, kind="stable")[:, :k]
-        distances = np.sqrt(np.take_along_axis(squares.clip(0), order, 1).astype(float))
+        distances = np.sqrt(np.take_along_axis(squares.clip(0), order, 1))
         lacking = ((0, 0), (0, k - order.shape[1]))
         return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)
 
@@ -121,6 +143,9 @@ CHOICES = [
     Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
     Choice("width of the GCN", "256", constants={"gcn.GCN": partial(GCN, hidden=256)}, anew=True),
+    Choice("sums over neighbours", "plain", constants={"gcn.normalise_adjacency": plain_sums}, anew=True),
+    Choice("readout of the graph", "sum of its nodes", anew=True,
+           constants={"gcn.mean_forward": sum_forward, "gcn.mean_backward": sum_backward}),
     Choice("likelihood of a particle", "reciprocal rank", Rules(likelihood=by_rank)),
     Choice("floor of the likelihood", "1e-2", constants={"episode.FLOOR": 1e-2}),
     Choice("floor of the likelihood", "1e-4", constants={"episode.FLOOR": 1e-4}),
@@ -136,12 +161,14 @@ CHOICES = [
     Choice("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
     Choice("state", "best place, one-hot", Rules(state=best_place), {"index": BruteForce}),
     Choice("state", "the filter's ranks", Rules(state=filter_ranks)),
+    Choice("state", "the filter's ranks, max", Rules(state=partial(filter_ranks, pooling="max"))),
     Choice("state", "ranks and last action", Rules(state=with_last_action), {"index": BruteForce},
            n_more=N_ACTIONS + 1),
     Choice("reward", "after the last step alone", Rules(reward=at_the_end)),
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
+    Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
     Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),

@@ -27,7 +27,7 @@ def probability(scores):
     return softmax(scores) + FLOOR  # CHOICE: softmax and a floor; the paper does not say how a view weighs a particle
 
 
-def view_ranks(scores, _pooled, _actions):
+def view_ranks(scores, _particles, _actions):
     """State: the reciprocal ranks of the latest view, (B, K)."""
     return reciprocal_ranks(scores)
 
@@ -46,7 +46,7 @@ class Rules:
     filter: Callable = ParticleFilter
     state: Callable = view_ranks
     reward: Callable = every_step
-    # CHOICE: the answer is the place (x, y, bearing) that holds most of the particles' weight.
+    # DIFFERS: the answer is the place (x, y, bearing) that holds most of the particles' weight; the paper pools by max.
     pooling: str = "sum"
 
 
@@ -77,7 +77,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
     rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
     poses, B = np.array(starts, float), len(starts)
-    kept, states, actions, belief = {name: [] for name in Record.__dataclass_fields__}, None, None, None
+    kept, states, actions, particles = {name: [] for name in Record.__dataclass_fields__}, None, None, None
     for step in range(rules.length + 1):
         if step:
             actions = senses.timed("plan", plan, step - 1, states, exploring)
@@ -87,18 +87,18 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             kept["actions"].append(actions)
         scores = senses.scores(poses, appearance)
         fit = rules.likelihood(scores)
-        if belief:
-            senses.timed("filter", _update, belief, odometry, fit)
+        if particles:
+            senses.timed("filter", _update, particles, odometry, fit)
         else:
-            belief = senses.timed("filter", rules.filter, grid, fit, filtering)
-        pooled = senses.timed("filter", belief.belief, grid.n_places, rules.pooling)
-        seen, states = states, senses.timed("ranks", rules.state, scores, pooled, actions)
+            particles = senses.timed("filter", rules.filter, grid, fit, filtering)
+        pooled = senses.timed("filter", particles.belief, grid.n_places, rules.pooling)
+        seen, states = states, senses.timed("ranks", rules.state, scores, particles, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
         in_place = pooled[np.arange(B), places]
         for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", in_place)):
             kept[name].append(value)
         if watch:
-            watch(step, poses=poses, scores=scores, filter=belief, pooled=pooled, seen=seen, actions=actions,
+            watch(step, poses=poses, scores=scores, filter=particles, pooled=pooled, seen=seen, actions=actions,
                   states=states, places=places, right=answers == places, belief=in_place)
     return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
 
@@ -124,6 +124,8 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
     store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`
     progress(share done, recent share of right answers)
     """
+    if checkpoint_every < 1:
+        raise ValueError(f"checkpoint_every: expected at least 1 episode, found {checkpoint_every}")
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
 
@@ -175,11 +177,11 @@ def race(senses, robot, grid, starts, seed, rules=None):
     return sequences[order], worth[order]
 
 
-def _update(belief, odometry, likelihood_of_view):
+def _update(particles, odometry, likelihood_of_view):
     """One cycle of the filter; it resamples before it moves, so that what it answers from is still weighed."""
-    belief.resample()
-    belief.predict(odometry)
-    belief.weigh(likelihood_of_view)
+    particles.resample()
+    particles.predict(odometry)
+    particles.weigh(likelihood_of_view)
 
 
 def _seed(seed):

@@ -15,6 +15,7 @@ MV, Scan and Ours are tested once more, from some of the starts of training: wha
 import json
 import platform
 import resource
+import sys
 import time
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
@@ -57,7 +58,7 @@ class Cell:
 def run_cell(cell, senses, starts, settings=None):
     """Learn and test in one cell; a function of its arguments alone, in whatever process it runs.
 
-    starts   : "training", "validation" and "tests" (n, 3) each
+    starts   : "training" (a multiple of N_CHECKPOINTS), "validation" and "tests", (n, 3) each
     settings : a dict that goes into the outcomes with what identifies home, net and GCN
     returns  : the outcomes, and what they cost, both as dicts for JSON
     """
@@ -99,9 +100,10 @@ def now():
 
 def costs(senses, began, n_pairs):
     """Seconds of each stage, and where and with what they were spent."""
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1024 if sys.platform == "darwin" else 1)  # [kB]
     return {"seconds": time.time() - began[0], "of processor": time.process_time() - began[1], "views": senses.views,
             "of stages": senses.seconds, "pairs": n_pairs, "host": platform.node(), "machine": platform.platform(),
-            "peak MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+            "peak MB": memory / 1024,
             "versions": {"python": platform.python_version(), **{name: version(name) for name in
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}
 

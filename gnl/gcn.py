@@ -28,6 +28,7 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     edges (E, 2), each pair once -> (N, N), symmetric, largest eigenvalue 1; graphs of a batch are its blocks
     """
     i, j = edges.T
+    # CHOICE: sums over neighbours are normalised; the group's code of 2021 sums plainly.
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
     rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)  # row by row
@@ -55,8 +56,11 @@ def graph_convolution_backward(dout, cache):
 
 
 def mean_forward(node_features, starts):
-    """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero."""
-    H, count = node_features, np.diff(starts)
+    """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero.
+
+    cache : nodes of each graph (B,)
+    """
+    H, count = node_features, np.diff(starts)  # CHOICE: a graph is the mean of its nodes; the paper names no readout.
     nodes_of = sparse(np.ones(len(H), H.dtype), np.arange(len(H)), starts, len(H))
     return nodes_of @ H / count.clip(1)[:, None].astype(H.dtype), (count,)
 
@@ -94,6 +98,9 @@ class GCN:
 
     def scores(self, graphs):
         """Scores of all places for each graph: SceneGraphs -> (B, K)."""
+        n_words = len(self.params["W1"])
+        if graphs.words.max(initial=0) >= n_words:
+            raise ValueError(f"words: expected 0..{n_words - 1}, found {graphs.words.max()}")
         return self.forward(graphs)[0]
 
     def forward(self, graphs):

@@ -15,7 +15,7 @@ from . import episode, gcn, nnql, segnet
 from .files import load_arrays, save_arrays
 from .places import PlaceGrid
 from .ranks import ranks
-from .robot import Robot
+from .robot import N_ACTIONS, Robot
 from .scene_graph import join
 from .senses import Senses
 
@@ -139,8 +139,9 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
 
     def load(path):
         arrays, made_by = load_arrays(path)
-        if list(arrays) != ["sequence"]:
-            raise ValueError(f"{path}: expected an action sequence, found {', '.join(sorted(arrays))}")
+        if list(arrays) != ["sequence"] or not np.isin(arrays["sequence"], range(N_ACTIONS)).all():
+            raise ValueError(f"{path}: expected a sequence of actions 0..{N_ACTIONS - 1}, "
+                             f"found {', '.join(f'{name} {a}' for name, a in arrays.items())}")
         return arrays["sequence"], made_by
 
     return lambda: kept(folder, "scan", settings, load, learn)

@@ -39,7 +39,7 @@ def conv_backward(dout, cache):
 
 
 def linear_forward(x, w, b=None):
-    """The same linear map at every pixel (a 1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F)."""
+    """The same linear map at every pixel (1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F); cache: x, w."""
     out = (x.reshape(len(x), -1, len(w)) if x.ndim > 2 else x) @ w  # a product for each image, not for each of its rows
     if b is not None:
         out += b
@@ -66,7 +66,7 @@ def relu_backward(dout, cache):
 
 
 def pool_forward(x, grid):
-    """Mean over each cell of a grid x grid partition: x (B, H, W, C) -> (B, grid, grid, C)."""
+    """Mean over each cell of a grid x grid partition: x (B, H, W, C) -> (B, grid, grid, C); cache: shape of x, grid."""
     B, H, W, C = x.shape
     rows = x.reshape(B, grid, H // grid, W * C).sum(2)  # whole rows first: their numbers lie side by side
     cells = rows.reshape(B, grid, grid, W // grid, C).sum(3)
@@ -83,7 +83,7 @@ def pool_backward(dout, cache):
 
 
 def upsample_forward(x, factor):
-    """Each pixel becomes factor x factor equal pixels: (B, H, W, C) -> (B, factor H, factor W, C)."""
+    """Each pixel becomes factor x factor equal pixels: (B, H, W, C) -> (B, factor H, factor W, C); cache: factor."""
     B, H, W, C = x.shape
     wide = np.empty((B, H, factor, W, factor, C), x.dtype)
     wide[:] = x[:, :, None, :, None]

@@ -25,7 +25,7 @@ from .kdtree import lengths
 from .rank_index import RankIndex
 
 K_NEIGHBOURS, ALPHA, GAMMA = 4, 0.1, 0.9
-SAME = 1e-6  # distance within which a state counts as met before
+SAME = 1e-6  # CHOICE: distance within which a state counts as met before; "quantization error" in the paper
 
 
 def epsilon(episode):
@@ -113,6 +113,9 @@ class NNQL:
         # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
         # several met is changed by one after the other.
         states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
+        if not (np.isin(actions, range(len(self.index))).all() and np.isfinite(rewards).all()):
+            raise ValueError(f"actions, rewards: expected 0..{len(self.index) - 1} and finite numbers, "
+                             f"found {actions}, {rewards}")
         found = self._neighbours(states)
         if done.all():
             ahead, self._states = 0.0, None  # nobody will ask for what comes after
@@ -170,12 +173,17 @@ class NNQL:
 
     @classmethod
     def load(cls, path, **settings):
-        """The store of a file of `save`, and what made it."""
+        """The store of a file of `save`, and what made it; k, alpha, gamma and index are not in the file."""
         arrays, made_by = load_arrays(path)
         kinds = ("states", "values", *Checkpoints.NAMES)
         n_actions = len(arrays) // len(kinds)
         if not n_actions or set(arrays) != {f"{kind}{a}" for kind in kinds for a in range(n_actions)}:
             raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
+        for a in range(n_actions):
+            states, values = arrays[f"states{a}"], arrays[f"values{a}"]
+            if states.ndim != 2 or values.shape != (len(states),) or not np.isfinite(values).all():
+                raise ValueError(f"{path}: expected states (n, K) and n finite values of action {a}, "
+                                 f"found {states.shape} and {values.shape}")
         store = cls(arrays["states0"].shape[1], n_actions, **settings)
         for a, index in enumerate(store.index):
             index.add(arrays[f"states{a}"])

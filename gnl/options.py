@@ -73,7 +73,7 @@ class Options:
                          for seen, ahead in zip(self.seen, self.ahead, strict=True)], 1)
 
     def q_values(self, states):
-        """Belief in the true place to be expected after going on with each action: (B, K) -> (B, A)."""
+        """Worth of each action in the race, and how much more than in the mean lies ahead here: (B, K) -> (B, A)."""
         return self.values(states) + self.offset
 
 

@@ -56,10 +56,14 @@ class ParticleFilter:
 
     def weigh(self, likelihood):
         """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them."""
+        likelihood = np.asarray(likelihood, np.float32)
+        if likelihood.shape != (len(self.x), self.grid.n_places) or not (likelihood >= 0).all():
+            raise ValueError(f"likelihood: expected {len(self.x)} x {self.grid.n_places} numbers from 0 on, "
+                             f"found {likelihood.shape} with least {likelihood.min(initial=0)}")
         self.place = np.empty(self.x.shape, int)
         for some in self._groups():
             self.place[some] = self.grid.place_of_xyt(self.x[some], self.y[some], self.theta[some])
-        for b, of_place in enumerate(np.asarray(likelihood, np.float32)):
+        for b, of_place in enumerate(likelihood):
             weight = self.weight[b] * of_place.take(self.place[b])
             total = weight.sum()
             if total > 0:  # a view that no particle can explain says nothing about which of them is right
@@ -87,10 +91,9 @@ class ParticleFilter:
         u, particles = self.rng.random(B), np.arange(M)
         for b in range(B):
             total = self.weight[b].cumsum(dtype=float)
-            copies = np.ceil(total * (M / total[-1]) - u[b]).astype(int)  # of all particles up to this one
-            copies[-1] = M  # rounding must not lose the last one
-            copies[1:] -= copies[:-1]  # of this one
-            drawn = particles.repeat(copies)
+            up_to = np.ceil(total * (M / total[-1]) - u[b]).clip(max=M).astype(int)  # copies of all up to this one
+            up_to[-1] = M  # rounding must neither add a copy nor lose the last one
+            drawn = particles.repeat(np.diff(up_to, prepend=0))
             for of_particle in (self.x, self.y, self.theta, self.place):
                 of_particle[b] = of_particle[b].take(drawn)
         self.weight = np.full((B, M), 1 / M, np.float32)

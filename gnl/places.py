@@ -26,7 +26,7 @@ class PlaceGrid:
 
     def place_of(self, poses):
         """Place of each pose: (..., 3) -> (...,) int. A pose off the grid gets the nearest cell of the rim."""
-        return self.place_of_xyt(*np.moveaxis(np.asarray(poses), -1, 0))
+        return self.place_of_xyt(*np.moveaxis(check_poses(poses), -1, 0))
 
     def place_of_xyt(self, x, y, theta):
         """The same from coordinates in arrays of their own."""
@@ -46,6 +46,16 @@ class PlaceGrid:
     def location_of(self, places):
         """Location class of each place, its bearing forgotten: ix * ny + iy."""
         return np.asarray(places) // self.n_bearings
+
+
+def check_poses(poses):
+    """The poses as an array (..., 3) of floats; ValueError if they are none."""
+    poses = np.asarray(poses, float)
+    if poses.shape[-1:] != (3,):
+        raise ValueError(f"poses: expected shape (..., 3), found {poses.shape}")
+    if not np.isfinite(poses).all():
+        raise ValueError(f"poses: expected finite numbers, found {poses[~np.isfinite(poses)][0]}")
+    return poses
 
 
 def wrap_angle(theta):

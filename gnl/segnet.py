@@ -35,7 +35,7 @@ from .nn import (
     upsample_forward,
 )
 
-SIZE_PX = 64
+SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which the paper's predicts
 QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, read like a page
 WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid parts the cells of the one before
 

@@ -56,8 +56,8 @@ class Senses:
 class SharedSenses:
     """Senses of planners that are tested from the same starts with the same luck.
 
-    While two of them do the same, robot b of one sees to the last bit what robot b of the other saw. So what one has
-    seen is remembered, and only what is new is looked at.
+    While two of them do the same, robot b of one sees the very view that robot b of the other saw. So its scores are
+    remembered, and only what is new is looked at, and counted.
     """
 
     def __init__(self, senses):

@@ -1,5 +1,6 @@
 """The terminal: one line for each stage of a run, one clear line for what cannot be done."""
 
+import argparse
 import multiprocessing
 import os
 import signal
@@ -10,6 +11,14 @@ from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager
 
 CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser of command lines that complains in one line."""
+
+    def error(self, message):
+        """End with exit status 2."""
+        self.exit(2, f"{self.prog}: {message} (--help tells more)\n")
 
 
 class Stage:

@@ -2,26 +2,38 @@
 
 import numpy as np
 import pytest
+from conftest import drawn
 
 from gnl import ablate, choices, episode
 from gnl.choices import CHOICES, BruteForce
 from gnl.kdtree import KDTree
 from gnl.nn import softmax
+from gnl.particles import ParticleFilter
+from gnl.places import PlaceGrid
 from gnl.ranks import reciprocal_ranks
 from gnl.scene_graph import regions
 
-SCORES, POOLED = np.array([[0.0, 3, 1], [2, 0, 0]]), np.array([[0.7, 0.1, 0.2], [0, 0, 1.0]])
+SCORES = np.array([[0.0, 3, 1], [2, 0, 0]])
 
 
 def test_states_are_what_their_names_say():
     first = reciprocal_ranks(SCORES)
-    np.testing.assert_allclose(choices.probabilities(SCORES, POOLED, None), softmax(SCORES), rtol=1e-6)
-    assert choices.best_place(SCORES, POOLED, None).tolist() == [[0, 1, 0], [1, 0, 0]]
-    np.testing.assert_array_equal(choices.filter_ranks(SCORES, POOLED, None), reciprocal_ranks(POOLED))
-    assert choices.with_last_action(SCORES, POOLED, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
-    after = choices.with_last_action(SCORES, POOLED, np.array([0, 2]))
+    np.testing.assert_allclose(choices.probabilities(SCORES, None, None), softmax(SCORES), rtol=1e-6)
+    assert choices.best_place(SCORES, None, None).tolist() == [[0, 1, 0], [1, 0, 0]]
+    assert choices.with_last_action(SCORES, None, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
+    after = choices.with_last_action(SCORES, None, np.array([0, 2]))
     np.testing.assert_array_equal(after[:, :3], first)
     assert after[:, 3:].tolist() == [[0, 1, 0, 0], [0, 0, 0, 1]]
+
+
+def test_the_filter_ranks_places_by_all_their_particles_or_by_the_heaviest():
+    grid = PlaceGrid(drawn(1))
+    particles = ParticleFilter(grid, np.ones((1, grid.n_places)), np.random.default_rng(0), n_particles=4)
+    particles.place, particles.weight = np.array([[0, 0, 1, 2]]), np.array([[0.3, 0.3, 0.4, 0.0]])
+    by_sum, by_greatest = (next(c for c in CHOICES if c.other == f"the filter's ranks{kind}").rules.state
+                           for kind in ("", ", max"))
+    np.testing.assert_array_equal(by_sum(SCORES[:1], particles, None), reciprocal_ranks([[0.6, 0.4, 0]]))
+    np.testing.assert_array_equal(by_greatest(SCORES[:1], particles, None), reciprocal_ranks([[0.3, 0.4, 0]]))
 
 
 def test_corners_join_regions_that_sides_do_not():
@@ -50,10 +62,29 @@ def test_of_equal_actions_the_first_is_taken_and_of_others_the_best():
     assert choices.first_of_equals(np.array([[1.0, 2, 2], [3, 3, 3], [0, -1, 5]]), None).tolist() == [1, 0, 2]
 
 
+def test_plain_sums_and_a_sum_over_nodes_are_those_of_dense_algebra_and_their_backward_fits():
+    rng, edges, starts = np.random.default_rng(0), np.array([[0, 1], [1, 2], [3, 4]]), np.array([0, 3, 5, 5])
+    dense = np.eye(5)
+    dense[edges[:, 0], edges[:, 1]] = dense[edges[:, 1], edges[:, 0]] = 1
+    np.testing.assert_array_equal(choices.plain_sums(edges, 5).toarray(), dense)
+    H, dout = rng.standard_normal((5, 4)), rng.standard_normal((3, 4))
+    total, cache = choices.sum_forward(H, starts)
+    np.testing.assert_allclose(total, [H[:3].sum(0), H[3:].sum(0), np.zeros(4)], atol=1e-12)
+    np.testing.assert_allclose((total * dout).sum(), (H * choices.sum_backward(dout, cache)).sum())  # it is linear
+
+
 def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
     brute = BruteForce(3)
     brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))
     assert brute.find(np.float32([[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0.01, 1]])).tolist() == [1, 0, -1, -1]
+
+
+def test_brute_force_finds_states_of_all_kinds_again():
+    rng, brute = np.random.default_rng(0), BruteForce(300)
+    states = softmax(3 * rng.standard_normal((100, 300))).astype(np.float32)
+    brute.add(states)
+    assert brute.find(states).tolist() == list(range(100))
+    assert [brute.find(state[None])[0] for state in states] == list(range(100))
 
 
 def test_brute_force_answers_like_the_tree():
@@ -65,7 +96,7 @@ def test_brute_force_answers_like_the_tree():
     queries = np.concatenate([rng.random((6, 5), np.float32), points[:4]])
     for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2), (4, None)):
         mine, trees = brute.query(queries, k, n_first), tree.query(queries, k, n_first)
-        np.testing.assert_allclose(mine[0], trees[0], atol=1e-3)
+        np.testing.assert_allclose(mine[0], trees[0], atol=1e-6)
         np.testing.assert_array_equal(mine[1], trees[1])
 
 

@@ -63,7 +63,9 @@ def test_what_is_no_command_has_status_2(capsys, line):
     assert run(*line.split()) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith("usage: python -m gnl")
+    assert err.startswith("python -m gnl")
+    assert err.endswith(" (--help tells more)\n")
+    assert err.count("\n") == 1
 
 
 def test_the_graph_of_a_label_image_is_printed_and_drawn(tmp_path, capsys):

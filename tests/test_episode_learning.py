@@ -32,7 +32,7 @@ class Diary:
 def test_the_store_is_told_each_step_with_the_right_reward(score, reward):
     diary, told = Diary(), []
 
-    def state(scores, pooled, actions):
+    def state(scores, particles, actions):
         told.append((scores, actions))
         return reciprocal_ranks(scores)
 
