@@ -8,9 +8,7 @@ import numpy as np
 
 from . import draw, episode, gcn, learned, planners, replay, segnet
 from .camera import render, true_labels
-from .classes import N_CLASSES
 from .compare import paired_difference
-from .files import load_arrays
 from .photo import check_noise
 from .places import PlaceGrid
 from .ranks import reciprocal_ranks
@@ -81,7 +79,7 @@ def learn(args, scale, helper, world, grid, robot):
         stage.done(text + (now if new else ", learned before"))
 
     stage = Stage("net")
-    views, views_made_by = load_views(args.views)
+    views, views_made_by = learned.load_views(args.views)
     if world.name in [f"home-{seed}" for seed in range(views_made_by.get("homes", 0))]:
         raise ValueError(f"{args.plan}: expected a home that the net does not learn from, found {world.name}")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
@@ -141,20 +139,6 @@ def check(args):
         if getattr(args, name) < least:
             raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
     check_noise(args.noise, "--noise")
-
-
-def load_views(path):
-    """Training views (rgb, labels) of a file of `python -m data_gen views`, and what made them."""
-    arrays, made_by = load_arrays(path)
-    rgb, labels = arrays.get("rgb", np.empty(0)), arrays.get("labels", np.empty(0))
-    size = segnet.SIZE_PX
-    if not (rgb.shape == (len(labels), size, size, 3) and labels.shape == (len(rgb), size, size)
-            and rgb.dtype == labels.dtype == np.uint8 and len(rgb)):
-        raise ValueError(f"{path}: expected rgb (n, {size}, {size}, 3) and labels (n, {size}, {size}) of bytes, "
-                         f"found {', '.join(f'{name} {a.shape}' for name, a in arrays.items())}")
-    if labels.max() >= N_CLASSES:
-        raise ValueError(f"{path}: expected labels 0..{N_CLASSES - 1}, found {labels.max()}")
-    return (rgb, labels), made_by
 
 
 def rng(args, stream):

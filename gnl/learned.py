@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from . import episode, gcn, nnql, segnet
+from .classes import N_CLASSES
 from .files import load_arrays, save_arrays
 from .places import PlaceGrid
 from .ranks import ranks
@@ -42,6 +43,22 @@ def kept(folder, name, settings, load, learn):
     """load(path) of the part `name` made with `settings`, or learn(path), which must write it."""
     path = path_of(folder, name, settings)
     return load(path)[0] if path.exists() else learn(path)
+
+
+def load_views(path):
+    """Training views (rgb, labels) of a file of `python -m data_gen views`, and what made them."""
+    arrays, made_by = load_arrays(path)
+    if not isinstance(made_by, dict):
+        raise ValueError(f"{path}: expected views of `python -m data_gen views`, found some made by {made_by}")
+    rgb, labels = arrays.get("rgb", np.empty(0)), arrays.get("labels", np.empty(0))
+    size = segnet.SIZE_PX
+    if not (rgb.shape == (len(labels), size, size, 3) and labels.shape == (len(rgb), size, size)
+            and rgb.dtype == labels.dtype == np.uint8 and len(rgb)):
+        raise ValueError(f"{path}: expected rgb (n, {size}, {size}, 3) and labels (n, {size}, {size}) of bytes, "
+                         f"found {', '.join(f'{name} {a.shape}' for name, a in arrays.items())}")
+    if labels.max() >= N_CLASSES:
+        raise ValueError(f"{path}: expected labels 0..{N_CLASSES - 1}, found {labels.max()}")
+    return (rgb, labels), made_by
 
 
 def segmentation_net(folder, views, views_made_by, epochs, seed, stage):

@@ -108,9 +108,9 @@ def prepare(out, settings, cells, jobs, pool):
             sys.exit(status)  # it has said why
 
     stage = Stage("net")
-    rgb_and_labels, views_made_by = load_arrays(views)
-    net = learned.segmentation_net(out / "learned", (rgb_and_labels["rgb"], rgb_and_labels["labels"]), views_made_by,
-                                   settings.net_epochs, seed=0, stage=stage)
+    pictures, made_by = learned.load_views(views)
+    check_settings(views, made_by, {"homes": settings.net_homes, "views": settings.net_views, "noise": settings.noise})
+    net = learned.segmentation_net(out / "learned", pictures, made_by, settings.net_epochs, seed=0, stage=stage)
     stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
     senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}

@@ -135,8 +135,10 @@ def test_the_papers_own_numbers_have_the_means_that_were_seen_in_them():
 
 def test_the_papers_table_is_the_one_beside_the_project_where_it_is():
     path = Path(__file__).parents[2] / "shared" / "paper" / "table1.csv"
-    rows = path.read_text().splitlines()[1:] if path.exists() else []
-    cells = table_1()
+    if not path.exists():
+        pytest.skip("the paper's file lies beside the project")
+    rows, cells = path.read_text().splitlines()[1:], table_1()
+    assert len(rows) == len(cells) == 75
     for row in rows:
         world, t_xy_m, t_theta_deg, *numbers = row.split(",")
         found = cells[int(world[:5]), float(t_xy_m), int(t_theta_deg)]

@@ -15,6 +15,7 @@ from data_gen.rooms import make_home
 from gnl import episode, planners
 from gnl.episode import Record, Rules, probability, run, run_all, train_nnql
 from gnl.gcn import GCN
+from gnl.particles import ParticleFilter
 from gnl.places import PlaceGrid, wrap_angle
 from gnl.ranks import reciprocal_ranks
 from gnl.robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
@@ -227,3 +228,13 @@ def test_the_rules_of_an_episode_are_those_that_are_given():
             lambda step, **what: pooled.append(what["pooled"]))
     assert (pooled[0] >= pooled[5] - 1e-6).all()
     assert pooled[0].sum() > 2 * pooled[5].sum()
+    made, used = [], []
+
+    def small(*args):
+        made.append(ParticleFilter(*args, n_particles=30))
+        return made[-1]
+
+    run(Sense(knows), Glide(), GRID, planners.chance, starts(9), 0, Rules(filter=small),
+        lambda step, **what: used.append(what["filter"]))
+    assert len(made) == 1
+    assert all(one is made[0] for one in used)

@@ -9,12 +9,14 @@ import pytest
 
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
-from gnl import episode, planners
+from gnl import episode, experiment, planners
 from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from gnl.gcn import GCN
 from gnl.learned import digest, fingerprint
+from gnl.options import Options
 from gnl.outcomes import arrays, outcomes, right
 from gnl.places import PlaceGrid
+from gnl.ranks import reciprocal_ranks
 from gnl.robot import Robot
 from gnl.senses import Senses
 
@@ -44,6 +46,8 @@ def live(cell, parts):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(episode, "SIDE_BY_SIDE", 2)  # so that its checkpoints differ
+        found["Options"] = []
+        patch.setattr(experiment, "Options", lambda *args: found["Options"].append(args) or Options(*args))
         for name in given:
             patch.setattr(episode, name, watched(getattr(episode, name)))
         return *run_cell(cell, replace(parts[0], seconds={}, views=0), parts[1], {"tests": N_TESTS}), given, found
@@ -111,6 +115,18 @@ def test_scan_is_the_winner_of_the_race_and_ours_plus_goes_on_with_one_action(li
     assert lived[0]["sequence"] == sequences[0].tolist()
     assert (scan.actions == sequences[0]).all()
     assert (ours_plus.actions == ours_plus.actions[:, :1]).all()
+
+
+def test_ours_plus_is_made_of_all_that_was_lived_through_and_of_the_worth_in_the_race(parts, lived):
+    (senses, starts), found = parts, lived[3]
+    ((experience, sequences, worth),), ((raced, won),) = found["Options"], found["race"]
+    np.testing.assert_array_equal(sequences, raced)
+    np.testing.assert_array_equal(worth, won)
+    steps, *_ = experience.arrays()
+    assert np.bincount(steps).tolist() == [0] + [N_TRAINING] * episode.LENGTH
+    first = reciprocal_ranks(senses.scores(starts["tests"], np.random.default_rng(0)))  # true labels have no noise
+    q, chosen = Options(experience, sequences, worth).q_values(first), found["run_all"][2].actions[:, 0]
+    np.testing.assert_array_equal(q[np.arange(len(q)), chosen], q.max(1))
 
 
 def test_all_methods_share_the_first_look(lived):

@@ -6,7 +6,7 @@ import naive_learning
 import numpy as np
 import pytest
 
-from gnl.particles import ParticleFilter
+from gnl.particles import AT_ONCE, ParticleFilter
 from gnl.places import PlaceGrid
 
 GRID = PlaceGrid(SimpleNamespace(bounds=(-1, 2, 5, 6)))  # 3 x 2 x 12 = 72 places; not square, not from 0
@@ -57,14 +57,37 @@ def test_odometry_moves_each_particle_along_its_own_bearing():
     np.testing.assert_allclose(belief.theta, before["theta"] + turn, atol=1e-6)
 
 
-def test_the_noise_of_motion_has_the_stated_spread():
+def test_the_noise_of_motion_has_the_stated_spread_in_each_direction_by_itself():
     belief = new_filter(n_particles=40_000, std=(0.1, 0.02))
     before = state(belief)
     belief.predict(np.zeros((1, 2)))
-    for name, std in (("x", 0.1), ("y", 0.1), ("theta", 0.02)):
-        step = getattr(belief, name) - before[name]
+    steps = [(getattr(belief, name) - before[name])[0] for name in ("x", "y", "theta")]
+    for step, std in zip(steps, (0.1, 0.1, 0.02), strict=True):
         assert step.std() == pytest.approx(std, rel=0.02)
         assert abs(step.mean()) < 4 * std / 200
+    assert np.corrcoef(steps) == pytest.approx(np.eye(3), abs=4 / 200)
+
+
+def test_each_of_many_robots_moves_by_its_own_odometry():
+    B = 2 * AT_ONCE + 3  # more than go at once
+    belief = new_filter(np.ones((B, K)), std=(0, 0))
+    before, odometry = state(belief), np.random.default_rng(1).uniform(-1, 1, (B, 2))
+    belief.predict(odometry)
+    forward, turn = odometry.T[..., None]
+    np.testing.assert_allclose(belief.x, before["x"] + forward * np.cos(before["theta"]), atol=1e-6)
+    np.testing.assert_allclose(belief.y, before["y"] + forward * np.sin(before["theta"]), atol=1e-6)
+    np.testing.assert_allclose(belief.theta, before["theta"] + turn, atol=1e-6)
+
+
+@pytest.mark.parametrize("likelihood", [np.ones((1, 3)), np.ones(K), np.ones((2, K)), np.full((1, K), np.nan),
+                                        np.eye(K)[:1] - 0.1])
+def test_a_likelihood_that_cannot_be_is_refused_and_changes_nothing(likelihood):
+    belief = new_filter()
+    before = state(belief)
+    with pytest.raises(ValueError, match=f"likelihood: expected 1 x {K} numbers from 0 on, found "):
+        belief.weigh(likelihood)
+    for name, value in before.items():
+        np.testing.assert_array_equal(getattr(belief, name), value)
 
 
 def test_resampling_is_unbiased_and_copies_floor_or_ceil_times():
@@ -217,5 +240,5 @@ def test_one_seed_gives_one_filter():
 def test_filters_side_by_side_are_each_what_one_would_be_alone():
     """Bit by bit, until they resample: there each draws a number of its own."""
     alone = life(random_likelihood(0), 0, False)
-    for name, value in life(random_likelihood(0).repeat(3, 0), 0, False).items():
-        np.testing.assert_array_equal(value, alone[name].repeat(3, 0))
+    for name, value in life(random_likelihood(0).repeat(AT_ONCE + 3, 0), 0, False).items():
+        np.testing.assert_array_equal(value, alone[name].repeat(AT_ONCE + 3, 0))

@@ -55,6 +55,18 @@ def test_answers_are_those_of_brute_force(draw, n_places, k, small):
     assert ids.dtype == int
 
 
+@pytest.mark.parametrize("k", [4, 16])
+def test_those_that_32_bits_cannot_tell_apart_are_told_apart_by_exact_distance(k, small):
+    rng = np.random.default_rng(0)
+    order, rows, low = rng.permutation(360), np.arange(120), rng.permutation(120) + 150
+    ranks = np.tile(np.arange(1, 361), (120, 1))  # each with two hopeless places exchanged: nearly equal dot products
+    ranks[rows, low], ranks[rows, low + 1] = ranks[rows, low + 1], ranks[rows, low].copy()
+    points = (1 / ranks).astype(np.float32)[:, order]
+    query = (1 / np.arange(1, 361)).astype(np.float32)[None, order]
+    for ours, true in zip(index_of(points).query(query, k), nearest(points, query, k), strict=True):
+        np.testing.assert_array_equal(ours, true)
+
+
 @pytest.mark.parametrize("draw", [clustered, duplicated])
 def test_both_indexes_agree_while_they_grow(draw, small):
     rng = np.random.default_rng(0)

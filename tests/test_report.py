@@ -24,9 +24,11 @@ METHODS = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
 
 
 def outcome(rng, share):
-    """Five looks of N episodes, of which a share is right after the last."""
+    """Five looks of N episodes, of which a share is right after the last; a fifth of the others in the location."""
     looks = rng.random((5, N)) < share
-    return {"place": ["".join("01"[int(x)] for x in look) for look in looks], "location": ["1" * N] * 5}
+    where = looks | (rng.random((5, N)) < 0.2)
+    return {name: ["".join("01"[int(x)] for x in look) for look in of]
+            for name, of in (("place", looks), ("location", where))}
 
 
 @pytest.fixture(scope="module")
@@ -66,16 +68,18 @@ def cells(folder):
     for path in sorted(folder.glob("cells/*.json")):
         result = json.loads(path.read_bytes())
 
-        def looks(outcome):
-            return [np.array([int(c) for c in look]) for look in outcome["place"]]
+        def looks(outcome, what="place"):
+            return [np.array([int(c) for c in look]) for look in outcome[what]]
 
-        of = [looks(outcome)[-1] for outcome in result["checkpoints"]]
+        past, tests = result["checkpoints"], result["tests"]
+        n_right = [looks(outcome)[-1].sum() for outcome in past]
         on_validation = [looks(outcome)[-1].sum() for outcome in result["validation"]]
-        chosen, best = (max(i for i in range(10) if n[i] == max(n)) for n in (on_validation, [x.sum() for x in of]))
-        where = tuple(result["cell"][key] for key in ("world", "t_xy_m", "t_theta_deg"))
-        found[where] = {name: looks(outcome)[-1] for name, outcome in result["tests"].items()} | {
-            "SV": looks(result["tests"]["MV"])[0], "Ours": of[-1], "DA": of[chosen], "Oracle": of[best],
-            "chosen": chosen, "best": best}
+        chosen, best = (max(i for i in range(10) if n[i] == max(n)) for n in (on_validation, n_right))
+        outcomes = {**tests, "Ours": past[-1], "DA": past[chosen], "Oracle": past[best]}
+        last = {what: {name: looks(outcome, what)[-1] for name, outcome in outcomes.items()}
+                | {"SV": looks(tests["MV"], what)[0]} for what in ("place", "location")}
+        found[tuple(result["cell"][key] for key in ("world", "t_xy_m", "t_theta_deg"))] = {
+            **last["place"], "location": last["location"], "chosen": chosen, "best": best}
     return found
 
 
@@ -153,8 +157,10 @@ def test_what_ours_knows_by_heart_is_told_by_gap(folder, written):
 
 def test_locations_are_told_apart_from_places(written, cells):
     part = section(written, "The location alone")
-    assert row(part, "location")[1:] == ["100.0"] * len(METHODS)
-    assert float(row(part, "place")[3]) == near(100 * np.mean([of["Scan"].mean() for of in cells.values()]))
+    for method, place, location in zip(METHODS, row(part, "place")[1:], row(part, "location")[1:], strict=True):
+        assert float(place) == near(100 * np.mean([of[method].mean() for of in cells.values()]))
+        assert float(location) == near(100 * np.mean([of["location"][method].mean() for of in cells.values()]))
+        assert float(location) > float(place)
 
 
 def test_the_checkpoints_that_were_chosen_and_that_were_best_are_counted(written, cells):
@@ -202,6 +208,15 @@ def test_every_cell_stands_in_the_table_of_its_home_in_the_papers_order(cells, w
                 assert float(ours) == near(100 * cells[(world, *gap)][method].mean())
                 papers = table_1()[(world, *gap)].get(method)
                 assert theirs == ([] if papers is None else [f"({papers:.0f})"])
+
+
+def test_cells_that_were_repeated_are_one_row_of_their_mean(folder):
+    one, other = report.load(folder)[0][:2]
+    twice = [one, {**other, "cell": {**one["cell"], "seed": 1}}]
+    said = row(report.whole_table(twice, METHODS), "0.2")[2:]
+    for method, words in zip(METHODS, said, strict=True):
+        mean = np.mean([report.right(result)[method].mean() for result in twice])
+        assert float(words.split()[0]) == near(100 * mean)
 
 
 def test_costs_are_those_of_all_views(written):
@@ -293,6 +308,17 @@ def test_a_cell_that_lacks_a_part_is_named(folder, tmp_path, capsys, missing):
     assert exit.value.code == 2
     assert err.startswith(f"python -m gnl: {path}: expected the outcomes of a cell, found KeyError('{missing}')")
     assert err.count("\n") == 1
+
+
+def test_a_cell_of_nine_checkpoints_is_named(folder, tmp_path, capsys):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
+    path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
+    result = json.loads(path.read_bytes())
+    result["checkpoints"].pop()
+    path.write_bytes(to_bytes(result))
+    with pytest.raises(SystemExit):
+        main(["report", "--out", str(tmp_path / "one")])
+    assert "found ValueError('9 checkpoints, 10 validated')" in capsys.readouterr().err
 
 
 def with_a_planner(folder, to, cells):

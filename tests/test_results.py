@@ -39,8 +39,9 @@ def test_the_report_is_what_the_cells_say(tmp_path):
     assert (tmp_path / "report.md").read_text() == REPORT
     assert "say nothing" not in REPORT
     for path in tmp_path.glob("*.png"):
-        drawn, kept = (np.array(Image.open(folder / path.name)).astype(int) for folder in (tmp_path, RESULTS))
-        assert abs(drawn - kept).mean() < 1
+        drawn, kept = (np.array(Image.open(folder / path.name).convert("RGB")).astype(int)
+                       for folder in (tmp_path, RESULTS))
+        assert (abs(drawn - kept).max(2) > 64).mean() < 0.002  # one curve is more
 
 
 def test_the_readme_says_what_the_report_says():

@@ -1,15 +1,18 @@
 """The senses: their books, looks around, and looks that planners share."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from data_gen.rooms import make_home
 from gnl import episode, planners, segnet
+from gnl.camera import render
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
+from gnl.scene_graph import scene_graph
 from gnl.senses import Senses, SharedSenses
 
 POSES = np.array([[1.0, 2, 0], [3, 4, 1], [3, 4, 1], [5, 6, 2]])
@@ -42,7 +45,30 @@ def test_senses_book_the_seconds_of_each_stage(task):
     episode.run(senses, robot, grid, planners.chance, senses.world.free_poses(3, np.random.default_rng(0)), 0)
     assert senses.views == 3 * (1 + episode.LENGTH)
     assert set(senses.seconds) == {"view", "graph", "GCN", "filter", "plan", "robot", "ranks"}
-    assert all(seconds >= 0 for seconds in senses.seconds.values())
+
+
+def test_a_stage_costs_the_sum_of_its_calls(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("gnl.senses.time", SimpleNamespace(perf_counter=lambda: now[0]))
+
+    def lasts(seconds):
+        now[0] += seconds
+        return seconds
+
+    senses = Senses(None, None, None)
+    assert [senses.timed("a", lasts, 2.0), senses.timed("b", lasts, 1.0), senses.timed("a", lasts, 3.0)] == [2, 1, 3]
+    assert senses.seconds == {"a": 5.0, "b": 1.0}
+
+
+@pytest.mark.parametrize("net", [None, {"scale": np.array(10)}], ids=["true labels", "net"])
+def test_a_robot_sees_what_the_net_makes_of_its_noisy_photograph_and_without_a_net_the_truth(two_rooms, monkeypatch,
+                                                                                             net):
+    seen, poses = [], two_rooms.free_poses(4, np.random.default_rng(0))
+    monkeypatch.setattr(segnet, "predict", lambda net, rgb: net["scale"] * rgb[..., 0] // 256)
+    monkeypatch.setattr("gnl.senses.scene_graph", lambda labels: seen.append(labels) or scene_graph(labels))
+    Senses(two_rooms, net, None, noise=3.0).look(poses, np.random.default_rng(2))
+    rgb, true = render(two_rooms, poses, np.random.default_rng(2), segnet.SIZE_PX, 3.0)
+    np.testing.assert_array_equal(seen[0], true if net is None else 10 * rgb[..., 0].astype(int) // 256)
 
 
 def test_a_look_around_is_the_looks_one_after_the_other(task):

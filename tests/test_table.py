@@ -7,16 +7,18 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from conftest import begun_by_make, full_disk
 
-from gnl import files, table
+from gnl import files, learned, segnet, table
 from gnl.__main__ import main
 from gnl.experiment import Cell, load_cell, to_bytes
 
-TINIEST = table.Settings(episodes=10, tests=10, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=1200,
+TINIEST = table.Settings(episodes=10, tests=12, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=1200,
                           gcn_epochs=12, gcn_rate=0.01)
 OPTIONS = ["--quick", "--worlds", "800", "801", "--gaps", "1.0/90", "--noise", "0.5"]
 NAMES = ["800-1m-90deg-seed0", "801-1m-90deg-seed0"]
@@ -75,8 +77,12 @@ def test_every_cell_is_a_file_with_all_that_is_needed_to_judge_it(reference):
             for right, where in zip(outcome["place"], outcome["location"], strict=True):
                 assert set(right) <= {"0", "1"}
                 assert all(w == "1" for r, w in zip(right, where, strict=True) if r == "1")  # who knows both knows one
+        net, = reference.folder.glob("learned/net-*.npz")
+        assert result["made from"]["net"] == learned.fingerprint(segnet.load(net)[0])
         beside = json.loads((reference.folder / "costs" / name).read_bytes())
         assert {"seconds", "views", "versions", "host", "peak MB"} <= beside.keys()
+        assert beside["of training"]["views"] == 5 * TINIEST.episodes
+        assert "labels" in beside["of stages"]
 
 
 def test_some_answers_are_right_so_that_equal_bytes_say_something(reference):
@@ -181,7 +187,7 @@ def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does
     (done / "settings.json").unlink()
     assert main_here(done, "--tests", 7) == 2
     path = done / "cells" / f"{NAMES[0]}.json"
-    assert capsys.readouterr().err == (f"python -m gnl: {path}: expected results of tests 7, found some of 10; "
+    assert capsys.readouterr().err == (f"python -m gnl: {path}: expected results of tests 7, found some of 12; "
                                        "name another folder with --out\n")
     assert not (done / "settings.json").exists()
 
@@ -220,6 +226,70 @@ def test_damaged_settings_are_named(tmp_path, capsys, damage):
     assert err.startswith(f"python -m gnl: {tmp_path / 'settings.json'}: expected settings, found ")
     assert err.count("\n") == 1
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [damage]
+
+
+def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeypatch):
+    settings, net, drawn, asked = table.Settings(*range(101, 112)), {"w": np.zeros(3)}, [], {}  # all numbers differ
+    made_by = {"homes": 105, "views": 106, "seed": 0, "noise": 104}
+
+    def segmentation_net(_folder, views, made_by, epochs, seed, stage):
+        asked["net"] = views, made_by, epochs
+        return net
+
+    def place_classifiers(_folder, senses, n_views, _seed, made_by, pool, **how):
+        asked["gcn"] = n_views, made_by, pool, how
+        return dict.fromkeys(senses, "GCN")
+
+    def load_views(path):
+        return ("photographs", "truth"), made_by
+
+    def program(argv):
+        drawn.append(argv[3:])
+        return SimpleNamespace(returncode=0)
+
+    monkeypatch.setattr(table, "subprocess", SimpleNamespace(run=program))
+    monkeypatch.setattr(table, "World", SimpleNamespace(load=lambda path: path.name))
+    for double in (segmentation_net, place_classifiers, load_views):
+        monkeypatch.setattr(learned, double.__name__, double)
+    senses = table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
+    data = tmp_path / "data"
+    assert drawn == [
+        ["views", f"{data / 'views.npz'}", "--homes", "105", "--views", "106", "--noise", "104"],
+        ["home", f"{data / 'home-800.json'}", "--seed", "800"],
+        ["starts", f"{data}", "--cell", "800", "1.0", "90", "3", "--training", "101", "--tests", "102",
+         "--validation", "103", "--jobs", "2"]]
+    assert asked == {"net": (("photographs", "truth"), made_by, 107),
+                     "gcn": (108, {"net": learned.fingerprint(net), "noise": 104}, "pool",
+                             {"epochs": 109, "batch": 110, "rate": 111})}
+    one = senses[800]
+    assert (one.world, one.net, one.gcn, one.noise) == ("home-800.json", net, "GCN", 104)
+    made_by["noise"] = 3
+    with pytest.raises(ValueError, match=r"views\.npz: expected results of noise 104, found some of 3; "):
+        table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
+
+
+def test_what_is_finished_is_kept_though_others_failed(tmp_path):
+    class AtOnce:
+        def submit(self, function):
+            future = Future()
+            try:
+                future.set_result(function())
+            except ArithmeticError as error:
+                future.set_exception(error)
+            return future
+
+    jobs = {**{f"bad {i}": (lambda: 1 / 0,) for i in range(9)}, "good": (lambda: ({"name": "good"}, {}),)}
+    with pytest.raises(ZeroDivisionError):
+        table.run_jobs(tmp_path, jobs, 10, AtOnce(), None)
+    assert {path.name for path in tmp_path.glob("*/*")} == {"good.json"}
+
+
+def test_the_quick_table_is_two_cells_of_one_home():
+    args = SimpleNamespace(worlds=table.WORLDS, gaps=None, episodes=None, tests=None, noise=None, seed=0, repeats=1,
+                           jobs=1, quick=True)
+    settings, cells = table.check(args)
+    assert settings == table.QUICK
+    assert cells == [Cell(800, 0.2, 10, 0), Cell(800, 1.0, 90, 0)]
 
 
 def test_where_nobody_listens_is_one_line(prepared, capsys):

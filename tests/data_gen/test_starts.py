@@ -47,6 +47,7 @@ def test_training_starts_are_beyond_each_of_the_papers_gaps(home, t_xy_m, t_thet
     assert (distance > t_xy_m).all()
     assert (turn > np.radians(t_theta_deg)).all()
     assert home.is_free(starts["training"][:, :2]).all()
+    assert len(np.unique(np.concatenate(list(starts.values())), axis=0)) == N_TESTS + 10 + 60  # none serves twice
 
 
 def test_there_are_starts_just_beyond_the_gap_so_it_is_not_larger_than_said():
