@@ -28,7 +28,7 @@ HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
 help:
 	@echo "make demo    learn every stage in a home and let a robot find out where it is (out/demo)"
-	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1 HOUSE=800 ALIASING=0.3"
+	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1 HOUSE=800 (from 40 on) ALIASING=0.3"
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"

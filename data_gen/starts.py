@@ -47,7 +47,7 @@ def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
         if sum(map(len, found)) < FEWEST * drawn:
             raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
                              f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
-                             f"among {drawn} poses drawn")
+                             f"among {drawn} poses drawn, {sum(map(len, found)) / drawn:.3%}")
     return np.concatenate(found)[:n]
 
 

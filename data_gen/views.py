@@ -8,12 +8,12 @@ import numpy as np
 
 from gnl.camera import render
 from gnl.classes import N_CLASSES
+from gnl.paper import WORLDS
 from gnl.photo import check_noise
 from gnl.segnet import SIZE_PX
 
 from .rooms import make_home
 
-FIRST_WORLD_SEED = 800
 CLASSES_IN_VIEW, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
 
@@ -22,8 +22,8 @@ def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
 
     returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
     """
-    if not 1 <= n_homes <= FIRST_WORLD_SEED:
-        raise ValueError(f"homes: expected 1..{FIRST_WORLD_SEED}, found {n_homes}")
+    if not 1 <= n_homes <= WORLDS[0]:
+        raise ValueError(f"homes: expected 1..{WORLDS[0]}, found {n_homes}")
     if n_views < 1:
         raise ValueError(f"views: expected at least 1, found {n_views}")
     if seed < 0:

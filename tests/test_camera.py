@@ -168,3 +168,15 @@ def test_true_labels_are_those_of_the_rendered_view(home, size):
 def test_no_view_at_all_is_no_error(home):
     rgb, labels = render(home, np.empty((0, 3)), np.random.default_rng(0), 64)
     assert (rgb.shape, labels.shape) == ((0, 64, 64, 3), (0, 64, 64))
+
+
+@pytest.mark.parametrize(("poses", "size", "noise", "words"), [
+    ([[1, 2, np.nan]], 64, 1, "poses: expected finite numbers, found nan"), ([[1, 2]], 64, 1, "poses: expected shape"),
+    ([[1, 2, 0]], 0, 1, "size: expected an even number of pixels, found 0"), ([[1, 2, 0]], 63, 1, "size: .* found 63"),
+    ([[1, 2, 0]], 64, -1, "noise: expected 0..10, found -1")])
+def test_views_that_cannot_be_are_refused(two_rooms, poses, size, noise, words):
+    with pytest.raises(ValueError, match=words):
+        render(two_rooms, poses, np.random.default_rng(0), size, noise)
+    if noise > 0:
+        with pytest.raises(ValueError, match=words):
+            true_labels(two_rooms, poses, size)

@@ -16,6 +16,7 @@ from conftest import FLAT, begun_by_make
 from PIL import Image
 
 from data_gen.__main__ import main as draw_data
+from data_gen.rooms import make_home
 from gnl import demo
 from gnl.__main__ import main
 from gnl.files import load_arrays, save_arrays
@@ -256,6 +257,14 @@ def test_a_plan_that_is_none_is_named(tmp_path, capsys, make):
     make(tmp_path / "plan")
     assert_one_line(capsys, ["--plan", tmp_path / "plan", "--views", tmp_path / "v", "--out", tmp_path / "out"],
                     f"{tmp_path / 'plan'}: expected ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_home_that_the_net_learns_from_is_refused(views, tmp_path, capsys):
+    plan = tmp_path / "plan.json"
+    make_home(1).save(plan)  # the views are of homes 0 and 1
+    assert_one_line(capsys, ["--plan", plan, "--views", views, "--out", tmp_path / "out"],
+                    f"{plan}: expected a home that the net does not learn from, found home-1")
     assert not (tmp_path / "out").exists()
 
 

@@ -210,3 +210,9 @@ def test_a_file_that_is_no_network_is_refused(tmp_path, change):
 def test_training_without_one_known_place_for_each_graph_is_refused(places):
     with pytest.raises(ValueError, match="places: expected .*, found "):
         gcn.train(net(), graphs_of(random_parts(0)), places, np.random.default_rng(0))
+
+
+def test_words_that_the_network_does_not_know_are_refused():
+    few = gcn.GCN(K, np.random.default_rng(0), n_words=3)
+    with pytest.raises(ValueError, match=r"words: expected 0\.\.2, found \d+"):
+        few.scores(graphs_of(random_parts(0)))

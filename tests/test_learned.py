@@ -260,3 +260,12 @@ def test_a_file_of_something_else_is_refused_by_name(monkeypatch, tmp_path, part
     save_arrays(path, {}, other=np.zeros(3))
     with pytest.raises(ValueError, match=f"{path}: "):
         get(part, tmp_path, **WAYS[part])(path)
+
+
+@pytest.mark.parametrize("sequence", [[9, 9, 9, 9], [0, 1, -1, 2], [0.5]])
+def test_a_sequence_of_no_actions_is_refused(monkeypatch, tmp_path, sequence):
+    monkeypatch.setattr(learned, "kept", lambda folder, name, settings, load, learn: load)
+    save_arrays(tmp_path / "scan.npz", {}, sequence=np.array(sequence))
+    load = get(learned.fixed_scan, tmp_path, **WAYS[learned.fixed_scan])
+    with pytest.raises(ValueError, match=r"scan\.npz: expected a sequence of actions 0\.\.2, found sequence "):
+        load(tmp_path / "scan.npz")

@@ -7,6 +7,7 @@ import naive_learning
 import numpy as np
 import pytest
 
+from gnl.files import load_arrays, save_arrays
 from gnl.kdtree import KDTree
 from gnl.nnql import ALPHA, GAMMA, NNQL, epsilon
 from gnl.rank_index import RankIndex
@@ -173,3 +174,25 @@ def test_what_robots_do_in_lockstep_is_searched_for_once(monkeypatch):
 
 def test_epsilon_is_that_of_the_paper():
     np.testing.assert_allclose(epsilon(np.array([0, 9, 99, 9999])), [1 / 1.1, 1 / 2, 1 / 11, 1 / 1001])
+
+
+@pytest.mark.parametrize(("actions", "rewards"), [([0, A], [1.0, 1.0]), ([0, -1], [1.0, 1.0]), ([0, 1], [1.0, np.nan])])
+def test_steps_that_cannot_be_are_refused_and_change_nothing(actions, rewards):
+    store, states = lived(5), random_states(np.random.default_rng(0), 2)
+    before = [values.copy() for values in store.values]
+    with pytest.raises(ValueError, match=r"actions, rewards: expected 0\.\.2 and finite numbers, found "):
+        store.learn(states, np.array(actions), np.array(rewards), states, np.zeros(2, bool))
+    for values, then in zip(store.values, before, strict=True):
+        np.testing.assert_array_equal(values, then)
+
+
+@pytest.mark.parametrize("change", [{"values1": np.zeros(2)}, {"values0": "nan"}, {"states2": np.zeros(K, np.float32)}],
+                         ids=lambda change: next(iter(change)))
+def test_a_file_that_is_no_store_is_refused(tmp_path, change):
+    path, store = tmp_path / "store.npz", lived(5)
+    store.save(path, "a test")
+    arrays, _ = load_arrays(path)
+    change = {name: np.full_like(arrays[name], np.nan) if isinstance(a, str) else a for name, a in change.items()}
+    save_arrays(path, "a test", **arrays | change)
+    with pytest.raises(ValueError, match=r"store\.npz: expected states \(n, K\) and n finite values of action \d"):
+        NNQL.load(path)

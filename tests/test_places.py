@@ -82,3 +82,12 @@ def test_angles_are_wrapped_to_the_half_open_circle():
     wrapped = wrap_angle(angles)
     assert ((wrapped > -np.pi) & (wrapped <= np.pi)).all()
     np.testing.assert_allclose(np.exp(1j * wrapped), np.exp(1j * angles), atol=1e-12)
+
+
+@pytest.mark.parametrize(("poses", "words"), [
+    (np.zeros(4), r"poses: expected shape \(\.\.\., 3\), found \(4,\)"),
+    (np.array([[1, 2, np.nan]]), "poses: expected finite numbers, found nan"),
+    (np.array([[1, np.inf, 0]]), "poses: expected finite numbers, found inf")])
+def test_poses_that_cannot_be_are_refused(poses, words):
+    with pytest.raises(ValueError, match=words):
+        grid_over(8, 6).place_of(poses)

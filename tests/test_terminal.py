@@ -212,3 +212,15 @@ def is_gone(pid, patience_s=5.0):
             return True
         time.sleep(0.02)
     return False
+
+
+@pytest.mark.parametrize(("threads", "wanted"), [(None, "1"), ("3", "3")])
+def test_gnl_and_the_processes_beside_it_have_one_thread_of_blas_unless_told_otherwise(threads, wanted):
+    code = ("import os; from gnl.terminal import processes\n"
+            "if __name__ == '__main__':\n"
+            "    name = 'OPENBLAS_NUM_THREADS'\n"
+            "    with processes(1) as pool: print(os.environ[name], pool.submit(os.getenv, name).result())")
+    env = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    env |= {"OPENBLAS_NUM_THREADS": threads} if threads else {}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == [wanted, wanted]
