@@ -25,7 +25,6 @@ from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
 from .table import Settings, agree, executor, finished, path_of, prepare, run_jobs, starts_of
-from .terminal import Stage
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
 CELLS = [Cell(world, 0.2, 10, 0) for world in WORLDS]  # narrow gaps leave room for many tests
@@ -57,11 +56,9 @@ def run(args):
     write_whole(out / "settings.json", to_bytes(asdict(SETTINGS)))
     if todo:
         with executor(args.jobs) as pool:
-            senses = prepare(out, SETTINGS, CELLS, args.jobs, pool)
-            stage = Stage("ablate")
-            run_jobs(out, {name: (measure, choice, cell, senses[cell.world], load_arrays(starts_of(out, cell))[0])
-                           for name, (choice, cell) in todo.items()}, SETTINGS.episodes, pool, stage)
-            stage.done(f"{len(todo)} runs of {SETTINGS.episodes} episodes")
+            senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
+            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], load_arrays(starts_of(out, cell))[0])
+                           for name, (choice, cell) in todo.items()], SETTINGS.episodes, pool, "ablate")
     measured = effects(out, chosen)
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
     if page:

@@ -92,7 +92,10 @@ def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stag
 
 
 def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
-    """The same for several worlds at once, each in a process of the executor `pool`: dicts of Senses -> of GCN."""
+    """The same for several worlds, each in a process of the executor `pool`: dict of Senses -> (world, GCN) one by one.
+
+    Whoever asks for the next one waits until it is learned; the pool can have other work by then.
+    """
     settings = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
                 for world, of_world in senses.items()}
     learning = {world: pool.submit(learn_places, of_world, PlaceGrid(of_world.world), n_views, seed, **how)
@@ -103,7 +106,8 @@ def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
         network.save(path, settings[world])
         return network
 
-    return {world: kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world)) for world in senses}
+    for world in senses:
+        yield world, kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world))
 
 
 def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, **how):

@@ -67,31 +67,37 @@ def run(args):
     write_whole(out / "settings.json", to_bytes(asdict(settings)))
     if todo:
         with executor(args.jobs, args.dask) as pool:
-            senses = prepare(out, settings, todo, args.jobs, pool)
-            stage = Stage("table")
-            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in todo}
-            jobs = {cell.name: (run_cell, cell, senses[cell.world], starts[cell], asdict(settings)) for cell in todo}
-            run_jobs(out, jobs, settings.episodes, pool, stage)
-            stage.done(f"{len(todo)} cells of {settings.episodes} episodes each")
+            jobs = ((cell.name, run_cell, cell, senses, load_arrays(starts_of(out, cell))[0], asdict(settings))
+                    for world, senses in prepare(out, settings, todo, args.jobs, pool)
+                    for cell in todo if cell.world == world)
+            run_jobs(out, jobs, settings.episodes, pool, "table")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
 
 
-def run_jobs(out, jobs, n_episodes, pool, stage):
-    """Hand jobs {name: (function, *arguments)} to the processes, and write each's outcomes and costs as they come."""
-    waiting = {pool.submit(*job): name for name, job in jobs.items()}
+def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
+    """Hand jobs (name, function, *arguments) to the processes, and write each's outcomes and costs as they come.
+
+    jobs : may be made one by one; those that are there are worked on while the next one is made
+    """
+    waiting = {pool.submit(*job): name for name, *job in jobs}
+    n_jobs, stage = len(waiting), Stage(name_of_stage)
     while waiting:
         ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
         for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
             name, (result, costs) = waiting.pop(future), future.result()
             write_whole(out / "costs" / f"{name}.json", to_bytes(costs))
             write_whole(path_of(out, name), to_bytes(result))
-        done = len(jobs) - len(waiting)
+        done = n_jobs - len(waiting)
         rate = done * n_episodes / stage.seconds
-        stage(done / len(jobs), f"{done} of {len(jobs)} cells, {rate:.0f} episodes/s")
+        stage(done / n_jobs, f"{done} of {n_jobs} cells, {rate:.0f} episodes/s")
+    stage.done(f"{n_jobs} cells of {n_episodes} episodes each")
 
 
 def prepare(out, settings, cells, jobs, pool):
-    """What the cells share: homes and starts, drawn by a program of their own, the net, and a GCN for each world."""
+    """What the cells share: homes and starts, drawn by a program of their own, the net, a GCN for each world.
+
+    Yields (world, Senses) as soon as the world's GCN is learned.
+    """
     data, worlds = out / "data", sorted({cell.world for cell in cells})
     views, homes = data / "views.npz", {world: data / f"home-{world}.json" for world in worlds}
     programs = [] if views.exists() else [["views", views, "--homes", settings.net_homes, "--views",
@@ -116,11 +122,9 @@ def prepare(out, settings, cells, jobs, pool):
     senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
     made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
-    classifiers = learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how)
-    for world, classifier in classifiers.items():
-        senses[world].gcn = classifier
+    for world, gcn in learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how):
+        yield world, replace(senses[world], gcn=gcn)
     stage.done(f"places of {len(worlds)} home{'s' * (len(worlds) > 1)}, {settings.gcn_views} views of each")
-    return senses
 
 
 def check(args):

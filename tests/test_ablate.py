@@ -191,8 +191,8 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
     page.write_text("| open | effect |\n| edges | ? |\n| neighbours | ? |\n")
 
     def run_jobs(out, jobs, *_):
-        asked.extend((choice, cell) for _, choice, cell, *_ in jobs.values())
-        assert list(jobs) == [ablate.name_of(choice, cell) for choice, cell in asked]
+        asked.extend((choice, cell) for _, _, choice, cell, *_ in jobs)
+        assert [name for name, *_ in jobs] == [ablate.name_of(choice, cell) for choice, cell in asked]
         write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
     for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_arrays", lambda _: [None]),

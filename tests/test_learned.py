@@ -146,8 +146,8 @@ def test_a_classifier_a_store_and_a_scan_from_their_files_are_those_that_were_le
 
     def learn():
         one = learned.place_classifier(tmp_path, senses, grid, 8, 0, {}, helper, None, epochs=1, batch=4)
-        of_worlds = learned.place_classifiers(tmp_path, {3: Senses(other, None, None), 4: senses}, 8, 0, {"many": 1},
-                                              helper, epochs=1, batch=4)
+        of_worlds = dict(learned.place_classifiers(tmp_path, {3: Senses(other, None, None), 4: senses}, 8, 0,
+                                                   {"many": 1}, helper, epochs=1, batch=4))
         store = learned.q_values(tmp_path, senses, Robot(senses.world), grid, 4, 0, {}, silent)
         scan = learned.fixed_scan(tmp_path, senses, grid, 1, 0, {}, helper)()
         networks = [one, *(of_worlds[world] for world in (3, 4))]

@@ -238,7 +238,7 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
 
     def place_classifiers(_folder, senses, n_views, _seed, made_by, pool, **how):
         asked["gcn"] = n_views, made_by, pool, how
-        return dict.fromkeys(senses, "GCN")
+        return [(world, "GCN") for world in senses]
 
     def load_views(path):
         return ("photographs", "truth"), made_by
@@ -251,7 +251,7 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
     monkeypatch.setattr(table, "World", SimpleNamespace(load=lambda path: path.name))
     for double in (segmentation_net, place_classifiers, load_views):
         monkeypatch.setattr(learned, double.__name__, double)
-    senses = table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
+    (world, one), = table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
     data = tmp_path / "data"
     assert drawn == [
         ["views", f"{data / 'views.npz'}", "--homes", "105", "--views", "106", "--noise", "104"],
@@ -261,11 +261,10 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
     assert asked == {"net": (("photographs", "truth"), made_by, 107),
                      "gcn": (108, {"net": learned.fingerprint(net), "noise": 104}, "pool",
                              {"epochs": 109, "batch": 110, "rate": 111})}
-    one = senses[800]
-    assert (one.world, one.net, one.gcn, one.noise) == ("home-800.json", net, "GCN", 104)
+    assert (world, one.world, one.net, one.gcn, one.noise) == (800, "home-800.json", net, "GCN", 104)
     made_by["noise"] = 3
     with pytest.raises(ValueError, match=r"views\.npz: expected results of noise 104, found some of 3; "):
-        table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
+        next(table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool"))
 
 
 def test_what_is_finished_is_kept_though_others_failed(tmp_path):
@@ -278,9 +277,9 @@ def test_what_is_finished_is_kept_though_others_failed(tmp_path):
                 future.set_exception(error)
             return future
 
-    jobs = {**{f"bad {i}": (lambda: 1 / 0,) for i in range(9)}, "good": (lambda: ({"name": "good"}, {}),)}
+    jobs = [*((f"bad {i}", lambda: 1 / 0) for i in range(9)), ("good", lambda: ({"name": "good"}, {}))]
     with pytest.raises(ZeroDivisionError):
-        table.run_jobs(tmp_path, jobs, 10, AtOnce(), None)
+        table.run_jobs(tmp_path, jobs, 10, AtOnce(), "table")
     assert {path.name for path in tmp_path.glob("*/*")} == {"good.json"}
 
 
