@@ -32,7 +32,7 @@ help:
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests"
 	@echo "make lint    check the style of the code"
-	@echo "make table   the paper's experiment at full scale, then its report (out/table; most of an hour)"
+	@echo "make table   the paper's experiment at full scale, then its report (out/table; three quarters of an hour)"
 	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); TABLE=folder; more with  $(RUN) -m gnl table --help"
 	@echo "make tutorials   run every chapter and render its figures anew; CHAPTERS='04 07' some of them"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"

@@ -119,10 +119,11 @@ def load_cell(path):
             raise ValueError(f"{len(result['checkpoints'])} checkpoints, {len(result['validation'])} validated")
 
     def look_at_costs(costs):
-        numbers = [costs["peak MB"], costs["of training"]["seconds"], *costs["of stages"].values()]
-        if not (sum(numbers) >= costs["of stages"]["graph"] and costs["seconds"] / costs["views"] > 0):
-            raise ValueError("costs below zero")
-        dict(costs["versions"]), str(costs["machine"])
+        numbers = [costs["seconds"], costs["views"], costs["peak MB"], costs["of training"]["seconds"],
+                   *costs["of stages"].values()]
+        if min(numbers) < 0 or not costs["views"]:
+            raise ValueError("no views, or less than nothing")
+        costs["of stages"]["graph"], costs["machine"], dict(costs["versions"])
 
     return (load_json(path, "the outcomes of a cell", look),
             load_json(path.parents[1] / "costs" / path.name, "the costs of a cell", look_at_costs))

@@ -192,7 +192,7 @@ def finished(out, name, load, settings=None):
         print(f"{error}; set aside as {path.stem}.damaged, done again", file=sys.stderr)
         return False
     if settings:
-        check_settings(path, result["settings"], settings)
+        check_settings(path, result.get("settings") or {}, settings)
     return True
 
 
