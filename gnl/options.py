@@ -23,7 +23,7 @@ from .robot import N_ACTIONS
 K_NEIGHBOURS = 100
 MOST_STEPS = 20_000  # twice as many take four times as long and teach no more
 FIRST_VIEWS = 2000  # over which a mean is taken
-AT_ONCE = 256  # queries whose likeness to all that is remembered is held in memory
+AT_ONCE = 64  # queries whose likeness to all that is remembered is held in memory
 
 
 class Experience:
