@@ -80,8 +80,10 @@ def learn(args, scale, helper, world, grid, robot):
 
     stage = Stage("net")
     views, views_made_by = learned.load_views(args.views)
-    if world.name in [f"home-{seed}" for seed in range(views_made_by.get("homes", 0))]:
-        raise ValueError(f"{args.plan}: expected a home that the net does not learn from, found {world.name}")
+    n_known = views_made_by.get("homes", 0)
+    if world.name in [f"home-{seed}" for seed in range(n_known)]:
+        raise ValueError(f"{args.plan}: expected a home that the net does not learn from (HOUSE from {n_known} on), "
+                         f"found {world.name}")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
     seen, true = render(world, world.free_poses(200, rng(args, 1)), rng(args, 2), segnet.SIZE_PX, args.noise)
     right, overlap = segnet.accuracy(segnet.predict(net, seen), true)

@@ -49,7 +49,7 @@ def load(out):
     for path, (result, _) in zip(paths, cells, strict=True):
         if result["tests"].keys() != cells[0][0]["tests"].keys():
             raise ValueError(f"{path}: expected tests of {', '.join(cells[0][0]['tests'])}, as in {paths[0].name}, "
-                             f"found those of {', '.join(result['tests'])}")
+                             f"found those of {', '.join(result['tests'])}; name another folder")
     cells.sort(key=lambda cell: [cell[0]["cell"][name] for name in ("world", "t_xy_m", "t_theta_deg", "seed")])
     settings = load_json(Path(out) / "settings.json", "the settings of a table")
     if not {"episodes", "tests"} <= settings.keys():
@@ -185,7 +185,7 @@ def adaptation(results):
     early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
     text = f"DA - Ours {interval(gain)}"
     if early:
-        text += f"; where one of the first five was chosen ({len(early)} cells) {interval(early)}"
+        text += f"; where one of the first five was chosen ({len(early)} of the cells) {interval(early)}"
     text += ". The best of ten equal ones looks better than they are: part of what Oracle gains is luck"
     return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
 
@@ -203,8 +203,8 @@ def cost(costs):
     machines = Counter(of_cell["machine"] for of_cell in costs)
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
-    return (f"{views} views in {seconds / 3600:.2f} hours by the clock, all cells together, {training / 3600:.2f} of "
-            f"them for the episodes of training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. "
+    return (f"{views} views in {seconds / 3600:.2f} hours, summed over cells that ran side by side, "
+            f"{training / 3600:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. "
             "Milliseconds a view:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 

@@ -264,7 +264,7 @@ def test_a_home_that_the_net_learns_from_is_refused(views, tmp_path, capsys):
     plan = tmp_path / "plan.json"
     make_home(1).save(plan)  # the views are of homes 0 and 1
     assert_one_line(capsys, ["--plan", plan, "--views", views, "--out", tmp_path / "out"],
-                    f"{plan}: expected a home that the net does not learn from, found home-1")
+                    f"{plan}: expected a home that the net does not learn from (HOUSE from 2 on), found home-1")
     assert not (tmp_path / "out").exists()
 
 

@@ -223,7 +223,7 @@ def test_costs_are_those_of_all_views(written):
     part = section(written, "What it costs")
     assert row(part, "labels and graph") == ["labels and graph", f"{(6 * 3600 + 1500) / 3000:.2f}", "18"]
     assert row(part, "all") == ["all", f"{9 * 3600 / 3000:.2f}", "28"]
-    assert "3000000 views in 9.00 hours by the clock, all cells together, 4.50 of them for the episodes of" in part
+    assert "3000000 views in 9.00 hours, summed over cells that ran side by side, 4.50 of them for the" in part
     assert "; at most 123 MB a process; core 0, core 1; numpy 2.0" in part
     assert part.index("labels and graph") < part.index("| all |")
 
