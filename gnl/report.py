@@ -204,8 +204,8 @@ def cost(costs):
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
     return (f"{views} views in {seconds / 3600:.2f} hours, summed over cells that ran side by side, "
-            f"{training / 3600:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; {', '.join(machines)}; {versions}. "
-            "Milliseconds a view:\n\n"
+            f"{training / 3600:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; "
+            f"{', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 
 
