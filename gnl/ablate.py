@@ -17,7 +17,7 @@ import numpy as np
 from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
-from .experiment import Cell, costs, now, to_bytes
+from .experiment import Cell, costs, costs_of, now, to_bytes
 from .files import load_arrays, load_json, write_whole
 from .outcomes import answers, outcomes
 from .paper import WORLDS
@@ -73,7 +73,7 @@ def load(path):
         answers(result["tests"]["MV"]), answers(result["tests"]["Ours"])
 
     return (load_json(path, "the outcomes of a run", look),
-            load_json(path.parents[1] / "costs" / path.name, "the costs of a run"))
+            load_json(costs_of(path), "the costs of a run"))
 
 
 def name_of(choice, cell):

@@ -108,6 +108,11 @@ def costs(senses, began, n_pairs):
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}
 
 
+def costs_of(path):
+    """The file of the costs of a cell, from that of its outcomes."""
+    return path.parents[1] / "costs" / path.name
+
+
 def load_cell(path):
     """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
     def look(result):
@@ -126,7 +131,7 @@ def load_cell(path):
         costs["of stages"]["graph"], costs["machine"], dict(costs["versions"])
 
     return (load_json(path, "the outcomes of a cell", look),
-            load_json(path.parents[1] / "costs" / path.name, "the costs of a cell", look_at_costs))
+            load_json(costs_of(path), "the costs of a cell", look_at_costs))
 
 
 def to_bytes(value):

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from . import learned
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, load_cell, run_cell, to_bytes
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, run_cell, to_bytes
 from .files import load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
 from .paper import WORLDS
@@ -85,8 +85,9 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
         ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
         for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
             name, (result, costs) = waiting.pop(future), future.result()
-            write_whole(out / "costs" / f"{name}.json", to_bytes(costs))
-            write_whole(path_of(out, name), to_bytes(result))
+            path = path_of(out, name)
+            write_whole(costs_of(path), to_bytes(costs))
+            write_whole(path, to_bytes(result))
         done = n_jobs - len(waiting)
         rate = done * n_episodes / stage.seconds
         stage(done / n_jobs, f"{done} of {n_jobs} cells, {rate:.0f} episodes/s")
@@ -181,7 +182,7 @@ def finished(out, name, load, settings=None):
     Damaged ones are named and set aside; of other settings there may be none.
     """
     path = path_of(out, name)
-    files = path, path.parents[1] / "costs" / path.name
+    files = path, costs_of(path)
     if not all(file.exists() for file in files):
         return False
     try:
