@@ -139,7 +139,7 @@ def test_the_papers_table_is_theirs_to_the_last_number():
     heads = [f"{world:05d},{t_xy_m},{t_theta_deg}" for world, t_xy_m, t_theta_deg in table_1()]
     whole = "".join(f"{head},{row}\n" for head, row in zip(heads, rows, strict=True))
     assert hashlib.sha256(whole.encode()).hexdigest() == (
-        "e2fe08fb9763e40abe50a09ac2dec9b6" "f2e1f9e418db31c6d4bad655d496af82")
+        "e2fe08fb9763e40abe50a09ac2dec9b6f2e1f9e418db31c6d4bad655d496af82")
 
 
 def test_a_difference_is_told_in_points_with_signs():
