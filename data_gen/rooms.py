@@ -25,6 +25,18 @@ IN_EVERY_HOME = {"bed", "table", "sofa", "refrigerator", "tv", "other"}
 TRIES = 10000  # of nine rooms, one layout in forty is good
 
 
+def add_arguments(parser):
+    """Options of `python -m data_gen home`."""
+    parser.add_argument("out", help="floor plan to write (.json)")
+    parser.add_argument("--seed", type=int, default=800)
+    parser.add_argument("--aliasing", type=float, default=0.3, help="0..1, how alike rooms are (0.3)")
+
+
+def run(args):
+    """One procedural home as a floor plan."""
+    make_home(args.seed, args.aliasing).save(args.out)
+
+
 def make_home(seed, aliasing=0.3):
     """The World of a home; arguments as for home_plan."""
     return World(home_plan(seed, aliasing))

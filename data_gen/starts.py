@@ -6,15 +6,72 @@ nearest test start and is turned by more than T_theta from it, so that no episod
     T_xy [m], T_theta [rad]   the domain gap     n starts, each (x [m], y [m], theta [rad])
 """
 
+from pathlib import Path
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from gnl.canvas import BELIEF, ROBOT
-from gnl.draw import sheet
+from gnl.draw import save_png, sheet
+from gnl.experiment import Cell
+from gnl.files import load_arrays, save_arrays
 from gnl.floor_map import Map
+from gnl.floor_plan import LARGEST_HOME_M
 from gnl.places import wrap_angle
+from gnl.terminal import Stage, processes
+
+from .rooms import make_home
 
 DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
+
+
+def add_arguments(parser):
+    """Options of `python -m data_gen starts`."""
+    parser.add_argument("folder", help="where to write them: a floor plan a home, start poses a cell")
+    parser.add_argument("--cell", nargs=4, action="append", required=True, metavar=("WORLD", "M", "DEG", "SEED"),
+                        help="seed of the home, T_xy, T_theta, seed; may be repeated")
+    parser.add_argument("--training", type=int, default=10_000)
+    parser.add_argument("--tests", type=int, default=100)
+    parser.add_argument("--validation", type=int, default=10)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--picture", action="store_true", help="draw both kinds of starts on the map, too")
+
+
+def run(args):
+    """Homes and start poses of cells of Table I, of those that lack one or the other."""
+    sizes = {"training": args.training, "tests": args.tests, "validation": args.validation}
+    for name, size in (*sizes.items(), ("jobs", args.jobs)):
+        if size < 1:
+            raise ValueError(f"--{name}: expected at least 1, found {size}")
+    cells, folder = [cell_of(words) for words in args.cell], Path(args.folder)
+    files = {cell: folder / f"starts-{cell.name}.npz" for cell in cells}
+    plans = {cell.world: folder / f"home-{cell.world}.json" for cell in cells}
+    todo = [cell for cell, path in files.items()
+            if not (plans[cell.world].exists() and path.exists() and load_arrays(path)[1] == sizes)]
+    if not todo:
+        return
+    stage, homes = Stage("starts"), {world: make_home(world) for world in {cell.world for cell in todo}}
+    for world, home in homes.items():
+        home.save(plans[world])
+    with processes(args.jobs) as pool:
+        drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
+        for i, (cell, poses) in enumerate(zip(todo, drawn, strict=True)):
+            save_arrays(files[cell], sizes, **poses.result())
+            if args.picture:
+                save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
+            stage((i + 1) / len(todo))
+    stage.done(f"{len(todo)} gaps between where one learns and where one is tested")
+
+
+def cell_of(words):
+    """The Cell of `--cell WORLD M DEG SEED`."""
+    try:
+        cell = Cell(*(kind(word) for kind, word in zip((int, float, int, int), words, strict=True)))
+        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m < LARGEST_HOME_M):
+            raise ValueError
+    except ValueError:
+        raise ValueError(f"--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, found {' '.join(words)}") from None
+    return cell
 
 
 def starts_of(cell, world, n_training, n_tests, n_validation):

@@ -4,17 +4,41 @@ The paper takes a net "off the shelf", trained on other images than those of its
 homes than those in which a robot is localized: seeds from 0 on, where the worlds have 800 and more.
 """
 
+from pathlib import Path
+
 import numpy as np
 
 from gnl.camera import render
 from gnl.classes import N_CLASSES
+from gnl.files import load_arrays, save_arrays
 from gnl.paper import WORLDS
 from gnl.photo import check_noise
 from gnl.segnet import SIZE_PX
+from gnl.terminal import Stage
 
 from .rooms import make_home
 
 CLASSES_IN_VIEW, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
+
+
+def add_arguments(parser):
+    """Options of `python -m data_gen views`."""
+    parser.add_argument("out", help="file of arrays to write (.npz)")
+    parser.add_argument("--homes", type=int, default=40)
+    parser.add_argument("--views", type=int, default=2400)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
+
+
+def run(args):
+    """Views of many homes and their true labels, unless the file has just these already."""
+    made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise}
+    if Path(args.out).exists() and load_arrays(args.out)[1] == made_by:
+        return
+    stage = Stage("homes")
+    rgb, labels = training_views(args.homes, args.views, args.seed, args.noise, stage)
+    save_arrays(args.out, made_by, rgb=rgb, labels=labels)
+    stage.done(f"{args.homes} furnished homes drawn, {args.views} views rendered to learn from")
 
 
 def training_views(n_homes, n_views, seed, noise=1.0, progress=None):

@@ -103,8 +103,7 @@ def prepare(out, settings, cells, jobs, pool):
     views, homes = data / "views.npz", {world: data / f"home-{world}.json" for world in worlds}
     programs = [] if views.exists() else [["views", views, "--homes", settings.net_homes, "--views",
                                            settings.net_views, "--noise", settings.noise]]
-    programs += [["home", path, "--seed", world] for world, path in homes.items() if not path.exists()]
-    lacking = [cell for cell in cells if not starts_of(out, cell).exists()]
+    lacking = [cell for cell in cells if not (homes[cell.world].exists() and starts_of(out, cell).exists())]
     if lacking:
         names = [part for cell in lacking for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
         programs.append(["starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,

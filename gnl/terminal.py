@@ -9,6 +9,7 @@ import threading
 import time
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
 
 CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
 
@@ -19,6 +20,29 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         """End with exit status 2."""
         self.exit(2, f"{self.prog}: {message} (--help tells more)\n")
+
+
+def command_line(program, description, commands, argv=None):
+    """Run the command that the words `argv` name, one of {name: (module, what it does)}.
+
+    The module's add_arguments(parser) and run(args) are the command. The others are not imported: with SciPy and all
+    that draws, it would take most of a second until a program, or a process beside it, begins.
+    """
+    argv = sys.argv[1:] if argv is None else argv
+    parser = Parser(prog=program, description=description)
+    parsers = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def run():
+        for name, (module, words) in commands.items():
+            command = parsers.add_parser(name, help=words)
+            if name in argv:
+                module = import_module(module)
+                module.add_arguments(command)
+                command.set_defaults(run=module.run)
+        args = parser.parse_args(argv)
+        args.run(args)
+
+    guarded(program, run)
 
 
 class Stage:

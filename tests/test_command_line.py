@@ -52,6 +52,13 @@ def test_the_module_runs_as_a_program():
     assert finished.stderr == ""
 
 
+def test_a_command_does_not_wait_for_what_others_import():
+    code = "import atexit, sys; atexit.register(lambda: print(*sys.modules)); from gnl.__main__ import main; main()"
+    there = subprocess.run([sys.executable, "-c", code, "graph", "--help"], capture_output=True, text=True).stdout
+    assert "gnl.draw_graph" in there.split()
+    assert "gnl.table" not in there.split()
+
+
 @pytest.mark.parametrize("command", ["demo", "graph"])
 def test_each_command_has_help(capsys, command):
     assert run(command, "--help") == 0

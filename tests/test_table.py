@@ -255,7 +255,6 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
     data = tmp_path / "data"
     assert drawn == [
         ["views", f"{data / 'views.npz'}", "--homes", "105", "--views", "106", "--noise", "104"],
-        ["home", f"{data / 'home-800.json'}", "--seed", "800"],
         ["starts", f"{data}", "--cell", "800", "1.0", "90", "3", "--training", "101", "--tests", "102",
          "--validation", "103", "--jobs", "2"]]
     assert asked == {"net": (("photographs", "truth"), made_by, 107),

@@ -155,6 +155,19 @@ def test_few_tests_leave_room_in_a_bearing_of_their_own():
     assert (abs(wrap_angle(starts[:, 2] - np.pi)) < np.radians(1) + 1e-9).all()
 
 
+def test_a_home_is_drawn_with_its_starts_and_again_if_it_is_lost(tmp_path):
+    def drawn():
+        with pytest.raises(SystemExit) as exit:
+            main(["starts", str(tmp_path), "--cell", "801", "0.2", "10", "0", "--training", "5", "--tests", "3"])
+        assert exit.value.code == 0
+        return {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    first, plan = drawn(), tmp_path / "home-801.json"
+    assert World.load(plan).plan == make_home(801).plan
+    plan.unlink()
+    assert drawn() == first
+
+
 @pytest.mark.parametrize("words", ["eight 0.2 10 0", "800 x 10 0", "800 0.2 ten 0", "800 0.2 10 -1", "800 nan 10 0"])
 def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     with pytest.raises(SystemExit) as exit:
