@@ -18,6 +18,7 @@ from gnl.terminal import Stage
 
 from .rooms import make_home
 
+# DIFFERS: the net learns from homes of the same kind as those where it is used; the paper's from photographs (ADE20K).
 CLASSES_IN_VIEW, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
 

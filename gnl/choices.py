@@ -12,10 +12,10 @@ from scipy import ndimage
 from .episode import Rules
 from .gcn import GCN, mean_backward, mean_forward, normalise_adjacency
 from .nn import softmax
-from .nnql import SAME
+from .nnql import NNQL, SAME
 from .particles import FLOOR, ParticleFilter
 from .ranks import reciprocal_ranks
-from .robot import N_ACTIONS, Motion
+from .robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,14 @@ def with_last_action(scores, _particles, actions):
     return np.concatenate([reciprocal_ranks(scores), last], 1)
 
 
-def at_the_end(right, _belief, done):
+def at_the_end(right, done, **_others):
     """Reward after the last step alone."""
     return np.where(done, np.where(right, 1.0, -1.0), 0.0)
+
+
+def of_the_view(scores, places, **_others):
+    """Reward for the first place of the latest view alone, not for the filter's answer."""
+    return np.where(scores.argmax(1) == places, 1.0, -1.0)
 
 
 def by_rank(scores):
@@ -102,6 +107,44 @@ def sum_backward(dout, cache):
     """Every node of a graph gets all of it; as gcn.mean_backward."""
     count, = cache
     return mean_backward(dout * count[:, None].astype(dout.dtype), cache)
+
+
+class Unresampled(ParticleFilter):
+    """Particles that are never drawn anew, and keep their weights."""
+
+    def resample(self):
+        pass
+
+
+class LeftOrForward(Robot):
+    """A robot of two actions: 0 turn left, 1 forward."""
+
+    def step(self, poses, actions, rng):
+        return super().step(poses, np.where(np.asarray(actions) == 0, LEFT, FORWARD), rng)
+
+
+class Endless(NNQL):
+    """Equation 2 as it is written, to the last step: what comes after it is worth what Q says."""
+
+    def learn(self, states, actions, rewards, next_states, done):
+        super().learn(states, actions, rewards, next_states, np.zeros_like(done))
+
+
+class OfAnyAction(NNQL):
+    """Neighbours may be of another action: a pair is a state and its action, one-hot, as in `with_last_action`."""
+
+    def __init__(self, n_places, n_actions):
+        super().__init__(n_places + n_actions, 1, index=BruteForce)
+        self.one_hot = np.eye(n_actions, dtype=np.float32)
+
+    def q_values(self, states):
+        of_pairs, n = super().q_values, len(states)
+        return np.concatenate([of_pairs(np.append(states, np.tile(a, (n, 1)), 1)) for a in self.one_hot], 1)
+
+    def learn(self, states, actions, rewards, next_states, done):
+        pairs, none = np.append(states, self.one_hot[actions], 1), np.zeros(len(states), int)
+        target = rewards + self.gamma * np.where(done, 0.0, self.q_values(next_states).max(1))
+        super().learn(pairs, none, target, pairs, np.ones_like(done))
 
 
 class BruteForce:
@@ -153,11 +196,15 @@ CHOICES = [
     Choice("motion noise of the filter", "10 cm, 0.1 rad", Rules(filter=partial(ParticleFilter, std=(0.1, 0.1)))),
     Choice("guided start", "10 places", Rules(filter=partial(ParticleFilter, n_start_places=10))),
     Choice("guided start", "30 places", Rules(filter=partial(ParticleFilter, n_start_places=30))),
+    Choice("resampling", "never", Rules(filter=Unresampled)),
+    Choice("resampling", "never, and answers pooled by max", Rules(filter=Unresampled, pooling="max")),
     Choice("noise of the odometry", "none", motion=Motion(std_m=0.0, std_rad=0.0)),
     Choice("answer, pooling of particles to places", "max", Rules(pooling="max")),
     Choice("actions: turn", "60 degrees", motion=Motion(turn_rad=np.pi / 3)),
     Choice("actions: forward", "0.25 m", motion=Motion(forward_m=0.25)),
     Choice("actions: forward", "1 m", motion=Motion(forward_m=1.0)),
+    Choice("actions: which", "left and forward", constants={
+        "ablate.Robot": LeftOrForward, "ablate.N_ACTIONS": 2, "planners.N_ACTIONS": 2}),
     Choice("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
     Choice("state", "best place, one-hot", Rules(state=best_place), {"index": BruteForce}),
     Choice("state", "the filter's ranks", Rules(state=filter_ranks)),
@@ -165,6 +212,9 @@ CHOICES = [
     Choice("state", "ranks and last action", Rules(state=with_last_action), {"index": BruteForce},
            n_more=N_ACTIONS + 1),
     Choice("reward", "after the last step alone", Rules(reward=at_the_end)),
+    Choice("reward: for which answer", "the view's first place", Rules(reward=of_the_view)),
+    Choice("the last step", "Q goes on after it", constants={"nnql.NNQL": Endless}),
+    Choice("neighbours of which action", "of any", constants={"nnql.NNQL": OfAnyAction}),
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),

@@ -53,6 +53,8 @@ def load(path, ade20k=False):
         raise ValueError(f"{path}: expected a label image, found nothing") from None
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:  # what Pillow says of a bad file
         raise ValueError(f"{path}: expected an image, found something else ({error})") from None
+    if image.format == "JPEG":
+        raise ValueError(f"{path}: expected an image that keeps indices as they are, such as PNG, found JPEG")
     if image.mode not in ("L", "P", "I", "I;16", "1"):
         raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
     labels = np.array(image).astype(int)

@@ -32,8 +32,9 @@ def view_ranks(scores, _particles, _actions):
     return reciprocal_ranks(scores)
 
 
-def every_step(right, _belief, _done):
+def every_step(right, **_others):
     """Reward after every step: +1 for a right answer, -1 for a wrong one, (B,)."""
+    # CHOICE: the answer is the filter's, as in the tests; the paper's "Top-1 predicted place class" may be the view's.
     return np.where(right, 1.0, -1.0)  # CHOICE: the reward comes after every step; the text also calls it sparse.
 
 
@@ -46,7 +47,8 @@ class Rules:
     filter: Callable = ParticleFilter
     state: Callable = view_ranks
     reward: Callable = every_step
-    # DIFFERS: the answer is the place (x, y, bearing) that holds most of the particles' weight; the paper pools by max.
+    # DIFFERS: the answer is the place (x, y, bearing) that holds most of the particles' weight; the paper pools by max,
+    # "regardless of their bearing attributes".
     pooling: str = "sum"
 
 
@@ -121,7 +123,8 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
     A checkpoint is taken when the robots that pass it, side by side, have come to their ends.
-    store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`
+    store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`;
+    the rules' reward gets what happened, too, and `done`, whether nothing comes after
     progress(share done, recent share of right answers)
     """
     if checkpoint_every < 1:
@@ -129,12 +132,12 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
 
-    def learn(step, seen, actions, states, right, belief, **others):
+    def learn(step, seen, actions, states, **others):
         if step:
             done = np.full(len(actions), step == rules.length)
-            senses.timed("learn", store.learn, seen, actions, rules.reward(right, belief, done), states, done)
+            senses.timed("learn", store.learn, seen, actions, rules.reward(done=done, **others), states, done)
         if watch:
-            watch(step, seen=seen, actions=actions, states=states, right=right, belief=belief, **others)
+            watch(step, seen=seen, actions=actions, states=states, **others)
 
     groups, done, recent = side_by_side(starts), 0, []
     for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True):
@@ -179,7 +182,7 @@ def race(senses, robot, grid, starts, seed, rules=None):
 
 def _update(particles, odometry, likelihood_of_view):
     """One cycle of the filter; it resamples before it moves, so that what it answers from is still weighed."""
-    particles.resample()
+    particles.resample()  # CHOICE: before every move; the paper does not say whether particles are drawn anew.
     particles.predict(odometry)
     particles.weigh(likelihood_of_view)
 

@@ -159,9 +159,7 @@ class Map(Canvas):
         for room in w.plan.get("rooms", []):
             name, parts = str(room.get("type", "")), np.array(cover_polygon(room["polygon"]))
             size = np.array([text_width(name, NAME_PX) / 2 + AIR_PX, NAME_PX / 2 + AIR_PX]) / self.px_per_m
-            low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
-            spots = np.stack(np.meshgrid(*map(np.arange, low + 0.1, high, [0.2, 0.2])), -1).reshape(-1, 2)
-            spots = spots[box_distance(spots, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1) == 0]
+            low, high, spots = np.min(room["polygon"], 0), np.max(room["polygon"], 0), w.spots_in(room)
             spots = spots[(abs(spots[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
             if not len(spots):
                 continue  # no room for a name

@@ -1,7 +1,7 @@
 """The graph convolution network: from a scene graph to scores of the places (section IV-B).
 
-Two graph convolutions, the mean over nodes, a linear map (after the group's code of 2021; sums over neighbours
-normalised as in Kipf and Welling 2017).
+Two graph convolutions, the mean over nodes, a linear map. (The paper refers to an earlier one for its network, of
+which no code is published; ours is after the group's code of 2021, sums normalised as in Kipf and Welling 2017.)
 
     H1 = ReLU(A_hat X W1 + b1)    X one-hot words, so X W1 is a lookup of rows of W1
     H2 = ReLU(A_hat H1 W2 + b2)   A_hat = D^-1/2 (A + I) D^-1/2
@@ -17,7 +17,8 @@ from .nn import Adam, linear_backward, linear_forward, relu_backward, relu_forwa
 from .scene_graph import N_WORDS, sparse
 
 HIDDEN = 128  # CHOICE: 256 in the group's code of 2021; no better here and twice the time
-BATCH, RATE, EPOCHS = 32, 0.001, 100  # the paper's
+BATCH, RATE = 32, 0.001  # the paper's
+EPOCHS = 100  # CHOICE: the paper says "training iterations"; a hundred batches of 32 views would teach next to nothing
 
 
 def normalise_adjacency(edges, n_nodes, dtype=np.float32):

@@ -113,6 +113,7 @@ def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
 def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, **how):
     """GCN trained on views from random free poses; half of them are seen by the `helper`, if there is one."""
     rng = np.random.default_rng(seed)
+    # CHOICE: from the whole home, places near the tests too; the paper trains one classifier "for each dataset".
     poses = senses.world.free_poses(n_views, rng)
     half = n_views // 2 if helper else n_views
     theirs = helper and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))

@@ -8,8 +8,8 @@ each with a value of its own. Any other pair has the mean value of its neighbour
 
     N(s, a)   the k stored pairs *of the same action* a whose states are nearest to s; if (s, a) itself is
               stored, it alone; nothing if a was never tried
-    (s', a')  in the paper two things by one name: in (1) a neighbour, where a' can only be a, so we write a;
-              in (2) s' is the state that came after s, and a' any action that could be done there
+    (s', a')  in the paper two things by one name: in (1) a neighbour, where we take a' to be a; in (2) s' is the
+              state that came after s, and a' any action that could be done there; after the last step nothing is
 
     B states side by side   K numbers a state   A actions   n pairs of one action, in order of birth
     k neighbours            r reward            alpha learning rate            gamma discount
@@ -96,6 +96,7 @@ class NNQL:
 
     def __init__(self, n_places, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
         self.k, self.alpha, self.gamma = k, alpha, gamma
+        # CHOICE: neighbours of a pair are pairs of the same action; the paper's N(s, a) could hold others, too.
         self.index = [index(n_places) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
         self.log = Checkpoints(n_actions)
@@ -120,6 +121,7 @@ class NNQL:
         if done.all():
             ahead, self._states = 0.0, None  # nobody will ask for what comes after
         else:
+            # CHOICE: nothing is ahead of the last step; the paper's equation does not know it.
             ahead = np.where(done, 0.0, self.q_values(next_states).max(1))
         target = rewards + self.gamma * ahead
         for a in range(len(self.index)):

@@ -74,6 +74,7 @@ def best_checkpoint(past):
 
 def latest_best(values):
     """Index of the greatest value, of equal ones the last."""
+    # CHOICE: of checkpoints that are right equally often the latest; the paper does not say.
     return len(values) - 1 - int(np.argmax(values[::-1]))
 
 

@@ -159,10 +159,15 @@ def power(results, methods):
 
 
 def locations(results, methods):
-    """Right answers if the bearing is not asked for."""
+    """Right answers if the bearing is not asked for, and what methods differ in then."""
+    def where(result):
+        return right(result, "location")
+
     rows = [["place", *(percent([right(result)[name].mean() for result in results]) for name in methods)],
-            ["location", *(percent([right(r, "location")[name].mean() for r in results]) for name in methods)]]
-    return markdown(["", *methods], rows)
+            ["location", *(percent([where(result)[name].mean() for result in results]) for name in methods)]]
+    pairs = [[f"{a} - {b}", *(interval(gains(results, a, b, of)) for of in (right, where))]
+             for a, b in pairs_of(methods)]
+    return markdown(["", *methods], rows) + "\n\n" + markdown(["", "place", "location"], pairs)
 
 
 def by_heart(results):
@@ -199,13 +204,14 @@ def cost(costs):
     rows = [[name, f"{value:.2f}", VIEW_MS.get(name, "")] for name, value in sorted(ms.items(), key=lambda x: -x[1])]
     seconds, training = (sum(part["seconds"] for part in parts)
                          for parts in (costs, [of_cell["of training"] for of_cell in costs]))
-    rows.append(["all", f"{1000 * seconds / views:.2f}", f"{sum(VIEW_MS.values()):.0f}"])
+    rows.append(["all", f"{1000 * seconds / views:.2f}", f"from {sum(VIEW_MS.values()):.0f} on"])
     machines = Counter(of_cell["machine"] for of_cell in costs)
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
     return (f"{views} views in {seconds / 3600:.2f} hours, summed over cells that ran side by side, "
             f"{training / 3600:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; "
-            f"{', '.join(machines)}; {versions}. Milliseconds a view:\n\n"
+            f"{', '.join(machines)}; {versions}. Milliseconds a view; the paper does not say whether its 18 hold the "
+            "net, and names none for rendering, filter and learning:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 
 

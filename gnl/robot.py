@@ -15,7 +15,7 @@ import pymunk
 from .places import wrap_angle
 from .world import ROBOT_RADIUS_M
 
-ACTIONS = ("left", "right", "forward")
+ACTIONS = ("left", "right", "forward")  # CHOICE: turns both ways; the paper says "rotating r or forward f motions"
 LEFT, RIGHT, FORWARD = range(len(ACTIONS))
 N_ACTIONS = len(ACTIONS)
 SKIN_M = 1e-3  # a robot at rest keeps this from what stopped it, or the next query would start in contact

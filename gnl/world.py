@@ -97,6 +97,18 @@ class World:
         reachable[reachable] = self.is_free(xy[reachable], radius_m)
         return reachable
 
+    def spots_in(self, room, step_m=0.2):
+        """Points of a raster within a room of the plan: (n, 2)."""
+        parts = np.array(cover_polygon(room["polygon"]))
+        low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
+        spots = np.stack(np.meshgrid(*map(np.arange, low + step_m / 2, high, [step_m] * 2)), -1).reshape(-1, 2)
+        return spots[box_distance(spots, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1) == 0]
+
+    def out_of_reach(self):
+        """Types of the rooms that no robot gets into: a doorway may be missing."""
+        return [str(room.get("type", "room")) for room in self.plan.get("rooms", [])
+                if not self.is_reachable(self.spots_in(room)).any()]
+
     def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
         """n poses uniform over the free space that hangs together, bearings uniform: (n, 3)."""
         poses, drawn = np.empty((0, 3)), 0

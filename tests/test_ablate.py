@@ -38,7 +38,7 @@ def parts():
 
 def constants():
     """What the modules that choices reach into hold now."""
-    modules = camera, episode, gcn, nnql, particles, planners, scene_graph, strip
+    modules = ablate, camera, episode, gcn, nnql, particles, planners, scene_graph, strip
     return {(module.__name__, name): str(value) for module in modules for name, value in vars(module).items()
             if not name.startswith("__")}
 

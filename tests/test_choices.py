@@ -50,7 +50,49 @@ def test_corners_join_regions_that_sides_do_not():
 
 def test_the_sparse_reward_comes_at_the_end():
     right = np.array([True, False, True, False])
-    assert choices.at_the_end(right, None, np.array([False, False, True, True])).tolist() == [0, 0, 1, -1]
+    assert choices.at_the_end(right, np.array([False, False, True, True])).tolist() == [0, 0, 1, -1]
+
+
+def test_a_view_is_rewarded_for_its_own_first_place_whatever_the_filter_says():
+    assert choices.of_the_view(SCORES, np.array([1, 2]), right=np.array([False, True])).tolist() == [1, -1]
+
+
+def test_particles_that_are_not_resampled_keep_their_poses_and_weights():
+    grid, likelihood = PlaceGrid(drawn(1)), np.random.default_rng(0).dirichlet(np.ones(PlaceGrid(drawn(1)).n_places), 2)
+    particles = choices.Unresampled(grid, likelihood, np.random.default_rng(1), n_particles=50)
+    before = particles.x.copy(), particles.weight.copy()
+    particles.resample()
+    np.testing.assert_array_equal((particles.x, particles.weight), before)
+    assert particles.weight.std() > 0
+
+
+def test_a_robot_of_two_actions_turns_left_and_goes_forward(two_rooms):
+    robot, pose = choices.LeftOrForward(two_rooms), [[2.0, 2.0, 0.0]] * 2
+    _, odometry, _ = robot.step(pose, [0, 1], np.random.default_rng(0))
+    np.testing.assert_allclose(odometry, [[0, np.pi / 6], [0.5, 0]], atol=0.15)
+
+
+def test_without_an_end_q_goes_on_after_the_last_step():
+    s, t, no_end = np.float32([[1, 0.5]]), np.float32([[0.5, 1]]), choices.Endless(2, 1)
+    no_end.learn(t, np.array([0]), np.array([10.0]), s, np.array([True]))  # 0.1 of 10
+    no_end.learn(s, np.array([0]), np.array([0.0]), t, np.array([True]))  # 1, as its neighbour, and on to 0.9
+    np.testing.assert_allclose(no_end.q_values(np.append(s, t, 0))[:, 0], [0.99, 1.0])
+
+
+def test_neighbours_of_any_action_are_the_nearest_in_state_and_action():
+    """By hand: k = 4, states at right angles; another action is as far as another state."""
+    states, store = np.eye(4, dtype=np.float32), choices.OfAnyAction(4, 2)
+    told = (0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (2, 1, 4.0), (3, 1, 5.0)
+    for state, action, reward in told:
+        store.learn(states[[state]], np.array([action]), np.array([reward]), states[:1], np.array([True]))
+    one = 0.1
+    two = one + 0.1 * (2 - one)  # each begins at the mean of its four nearest, the nearer and then the older first
+    three = (one + two) / 2 + 0.1 * (3 - (one + two) / 2)
+    four = (one + two + three) / 3 + 0.1 * (4 - (one + two + three) / 3)
+    five = (one + two + three + four) / 4 + 0.1 * (5 - (one + two + three + four) / 4)
+    np.testing.assert_allclose(store.q_values(states[:1]), [[one, two]])  # met before
+    np.testing.assert_allclose(store.q_values(states[1:2]), [[three, (two + three + four + five) / 4]])
+    assert store.q_values(states).shape == (4, 2)
 
 
 def test_a_likelihood_by_rank_is_the_reciprocal_rank_and_a_floor_below_it():

@@ -75,6 +75,14 @@ def test_what_is_no_command_has_status_2(capsys, line):
     assert err.count("\n") == 1
 
 
+def test_an_image_that_blurs_indices_is_refused(tmp_path, capsys):
+    path = tmp_path / "view.jpg"
+    Image.fromarray(LABELS).save(path)
+    assert run("graph", path) == 2
+    assert capsys.readouterr().err == (f"python -m gnl: {path}: expected an image that keeps indices as they are, "
+                                       "such as PNG, found JPEG\n")
+
+
 def test_the_graph_of_a_label_image_is_printed_and_drawn(tmp_path, capsys):
     path, picture = write(tmp_path / "view.png"), tmp_path / "view-graph.png"
     assert run("graph", path) == 0

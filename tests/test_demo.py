@@ -18,6 +18,7 @@ from PIL import Image
 from data_gen.__main__ import main as draw_data
 from data_gen.rooms import make_home
 from gnl import demo
+from gnl import learned as parts_learned
 from gnl.__main__ import main
 from gnl.files import load_arrays, save_arrays
 
@@ -182,6 +183,82 @@ def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
     assert last[last.index("--pictures") + 1] == folder
     assert last[last.index("--plan") + 1] == plan or not plan
     assert last[-2:] == ["--tests", "3"]
+
+
+def test_every_method_has_the_same_starts_and_noise_and_costs_are_those_of_the_test_alone(monkeypatch, capsys):
+    asked, senses = [], SimpleNamespace(seconds={"view": 9.0}, views=3)
+
+    def run_all(senses, _robot, _grid, plan, starts, seed):
+        asked.append((plan, id(starts), seed))
+        senses.views, senses.seconds["view"] = senses.views + 10, senses.seconds.get("view", 0) + 0.02
+        return SimpleNamespace(correct=np.eye(4, 5, dtype=bool))
+
+    monkeypatch.setattr(demo.episode, "run_all", run_all)
+    starts = np.zeros((4, 3))
+    demo.test(SimpleNamespace(seed=2), senses, None, None, {"MV": "m", "Scan": "s", "Ours": "o"}, starts)
+    assert asked == [(plan, id(starts), 8) for plan in "mso"]
+    assert "  view 2.00\n" in capsys.readouterr().out
+
+
+def test_the_tests_begin_where_nothing_was_learned_and_every_method_has_its_name(monkeypatch):
+    given = []
+    monkeypatch.setattr(demo, "learn", lambda *_: (None, "store", [2, 0, 1, 1]))
+    monkeypatch.setattr(demo.planners, "greedy", lambda store: f"greedy {store}")
+    monkeypatch.setattr(demo, "show", lambda *_: None)
+    monkeypatch.setattr(demo, "test", lambda *args: given.extend(args[-2:]))
+    demo.play(SimpleNamespace(plan=FLAT, seed=3), demo.Scale(), None)
+    plans, starts = given
+    assert plans["Scan"](0, np.zeros((2, 1)), None).tolist() == [2, 2]
+    assert plans["Ours"] == "greedy store"
+    for stream in ([3], [3, 1], [3, 2]):  # of the GCN, of NNQL, of the race: learned.py
+        learned_from = demo.World.load(FLAT).free_poses(len(starts), np.random.default_rng(stream))
+        assert not np.isin(starts, learned_from).any()
+    assert not np.isin(starts, demo.World.load(FLAT).free_poses(len(starts), np.random.default_rng(5))).any()
+
+
+def test_all_that_the_demo_learns_from_is_in_the_names_of_its_files(monkeypatch, tmp_path, two_rooms):
+    def named(world=two_rooms, made_by="views", noise=1.0, **scale):
+        settings, keep = [], lambda _folder, _name, settings_, *_: settings.append(parts_learned.digest(settings_))
+        monkeypatch.setattr(parts_learned, "kept", lambda *args: keep(*args) or SimpleNamespace(values=[]))
+        monkeypatch.setattr(parts_learned, "load_views", lambda path: (None, {"by": made_by}))
+        monkeypatch.setattr(demo, "render", lambda *_: (None, None))
+        for module, name in ((demo.segnet, "predict"), (demo.segnet, "accuracy"), (parts_learned, "top_places")):
+            monkeypatch.setattr(module, name, lambda *_: (1, 1))
+        monkeypatch.setattr(demo.Senses, "look_around", lambda *_: None)
+        monkeypatch.setattr(parts_learned, "fixed_scan", lambda *args: keep(*args[:2], args[5]) or list)
+        args = SimpleNamespace(out=tmp_path, views="", plan="", seed=0, noise=noise)
+        demo.learn(args, demo.Scale(**scale), None, world, demo.PlaceGrid(world), None)
+        return settings
+
+    _, *others = named()  # of the GCN, the scan, the store
+    for other in ({"world": make_home(3)}, {"made_by": "others"}, {"noise": 2.0}, {"net_epochs": 9}, {"gcn_epochs": 9}):
+        assert not set(others) & set(named(**other)), other
+
+
+def test_labels_are_those_of_the_net_and_the_truth_and_ranks_mark_the_true_place(monkeypatch, tmp_path, two_rooms):
+    shown, marked, labels, ranks = [], [], demo.draw.labels, demo.draw.ranks
+    monkeypatch.setattr(demo.draw, "labels", lambda image, px: shown.append(image) or labels(image, px))
+    monkeypatch.setattr(demo.draw, "ranks", lambda g, v, place, *how: marked.append(place) or ranks(g, v, place, *how))
+    grid, g = demo.PlaceGrid(two_rooms), np.random.default_rng(0)
+    senses = demo.Senses(two_rooms, demo.segnet.new_params(g), demo.gcn.GCN(grid.n_places, g, hidden=8))
+    start = np.array([[2.0, 1.6, 0.2]])
+    demo.draw_stages(tmp_path, senses, grid, start, np.random.default_rng(3))
+    small, true = demo.render(two_rooms, start, np.random.default_rng(3), 64, senses.noise)
+    np.testing.assert_array_equal(shown, [demo.segnet.predict(senses.net, small)[0], true[0]])
+    assert marked == grid.place_of(start).tolist()
+
+
+@pytest.mark.parametrize(("episodes", "shown"), [
+    (["01100", "00011", "00111"], "00011"),  # wrong, wrong, ..., right, right: that one, though others come after it
+    (["00000", "11111", "00001", "01110"], "00001"), (["00010", "11000", "00000"], "00010"), (["10000"], "10000")])
+def test_the_episode_that_is_shown_begins_in_doubt_and_ends_well_if_any_does(monkeypatch, episodes, shown):
+    def collect(_senses, _robot, _grid, _plan, start, seed, _store):
+        assert seed == [7, episodes.index(start)]
+        return [SimpleNamespace(answer=int(right), place=1, of=start) for right in start]
+
+    monkeypatch.setattr(demo.replay, "collect", collect)
+    looks = demo.telling_episode(None, None, None, None, episodes, 7, lambda share: None)
+    assert looks[0].of == shown
 
 
 def test_the_table_holds_accuracies_and_their_differences_in_pairs(capsys):

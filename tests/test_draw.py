@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import FLAT
+from conftest import FLAT, room, thing
 from PIL import Image
 
 from gnl import canvas, draw, floor_map
@@ -272,3 +272,71 @@ def test_a_saved_picture_is_the_picture_and_nothing_else(world, grid, tmp_path):
     draw.save_png(picture, tmp_path / "home.png")
     assert [path.name for path in tmp_path.iterdir()] == ["home.png"]
     assert (np.array(Image.open(tmp_path / "home.png")) == np.array(picture)).all()
+
+
+def test_a_map_names_its_cells_as_a_chess_board_does_and_its_scale_is_two_metres(monkeypatch):
+    words, lines = {}, []
+    monkeypatch.setattr(canvas.Canvas, "text", lambda _, at, text, *how: words.update({text: at}))
+    monkeypatch.setattr(canvas.Canvas, "line", lambda _, points, *how: lines.append(points))
+    home = World(room(size=(6.0, 4.0)))
+    plan = floor_map.Map(home, 640, grid=PlaceGrid(home))
+    assert set(words) == {"A", "B", "C", "1", "2", "2 m"}
+    assert words["A"][0] < words["B"][0] < words["C"][0]  # columns to the right
+    assert words["1"][1] > words["2"][1]  # rows upwards
+    assert np.ptp(np.array(lines[-1])[:, 0]) == pytest.approx(2 * plan.px_per_m)
+
+
+@pytest.mark.parametrize("theta", [0.6, 2.0, -1.2])
+def test_robots_starts_and_particles_look_to_their_bearing(world, monkeypatch, theta):
+    plan, darts, hairs = floor_map.Map(world, 640), [], []
+    monkeypatch.setattr(canvas.Canvas, "polygon", lambda _, points, *how: darts.append(np.asarray(points)))
+    monkeypatch.setattr(canvas.Canvas, "line", lambda _, points, *how: hairs.append(np.subtract(*points[::-1])))
+    plan.robot(np.array([3.0, 2.0, theta]))
+    plan.starts([[2.0, 1.0, theta]])
+    plan.particles((*np.array([[3.0], [2.0], [theta]]), np.ones(1)), n=1)
+    ahead = np.array([np.cos(theta), -np.sin(theta)])  # y runs down in a picture
+    for way in [points[0] - points[2] for points in darts] + hairs:
+        np.testing.assert_allclose(way / np.hypot(*way), ahead, atol=1e-6)
+
+
+def test_cells_far_out_are_named_by_two_letters():
+    assert [floor_map.column_name(i) for i in (0, 25, 26, 27, 52)] == ["A", "Z", "AA", "AB", "BA"]
+
+
+def test_a_path_is_a_line_through_its_poses(world):
+    plan = floor_map.Map(world, 640)
+    before = plan.picture()
+    plan.path(np.array([[2.5, 1.0, 0], [3.5, 2.0, 0]]))
+    half_way = plan.at([3.0, 1.5])
+    assert colour_at(plan.picture(), half_way) != colour_at(before, half_way)
+
+
+def test_a_turned_thing_is_turned_on_the_map_too():
+    plan = floor_map.Map(World(room(thing("bed", 3, 2, 2.0, 0.4, 0.5, angle=0.6))), 640)
+    along = 0.8 * np.array([np.cos(0.6), np.sin(0.6)])
+    assert colour_at(plan.picture(), plan.at((3, 2) + along)) == tuple(PALETTE[BED])
+    assert colour_at(plan.picture(), plan.at((3, 2) + along * [1, -1])) != tuple(PALETTE[BED])
+
+
+def test_what_carries_is_drawn_below_what_it_carries_and_what_hangs_has_an_outline_and_no_lintel_is_a_wall(two_rooms):
+    plan = floor_map.Map(two_rooms, 640)
+    assert colour_at(plan.picture(), plan.at([1.2, 3.1])) == tuple(PALETTE[CLASSES.index("tv")])
+    assert colour_at(plan.picture(), plan.at([4.0, 1.45])) != tuple(PALETTE[WALL])
+
+
+def test_the_cell_and_the_petal_of_a_place_are_marked(world, grid):
+    plan = floor_map.Map(world, 640, grid=grid)
+    plan.place(grid.place_of(np.array([3.2, 1.9, np.radians(100)])), canvas.RIGHT)
+    assert colour_at(plan.picture(), plan.at([2.0, 1.0])) == canvas.RIGHT  # the cell is 2..4 m, 0..2 m
+    assert colour_at(plan.picture(), plan.at([3.0, 2.0])) == canvas.RIGHT
+    petal = plan.petal(grid.place_of(np.array([3.2, 1.9, np.radians(100)]))).mean(0)
+    assert colour_at(plan.picture(), petal) != colour_at(floor_map.Map(world, 640, grid=grid).picture(), petal)
+
+
+def test_a_sight_ends_at_the_thing_that_hides_the_wall_on_its_own_side_and_far_walls_are_seen():
+    hall = World(room(size=(8.0, 4.0)))
+    plan = floor_map.Map(hall, 640)
+    before = plan.picture()
+    plan.sight(np.array([0.5, 0.5, 0.6]))
+    assert colour_at(plan.picture(), plan.at([6.5, 3.5])) != colour_at(before, plan.at([6.5, 3.5]))
+    assert colour_at(plan.picture(), plan.at([7.0, 1.0])) != colour_at(before, plan.at([7.0, 1.0]))

@@ -142,3 +142,20 @@ def test_lines_take_the_usual_colours_in_turn():
                                          {0: "0", 1: "1"}, "x"))
     (_, a), (_, b) = (spots(picture[:, 50:400], colour)[0] for colour in draw_charts.USUAL[:2])
     assert a > b
+
+
+def test_names_of_gaps_stand_beside_their_fields_and_ticks_beside_their_values(written):
+    draw_charts.heat_maps({800: {(0.2, 10): 12.0, (1.0, 90): -3.5}}, (0.2, 1.0), (10, 90))
+    at = {words: (x, y) for x, y, words in written}
+    for m, deg, value in (("0.2 m", "10 deg", "+12.0"), ("1 m", "90 deg", "-3.5")):
+        assert (at[m][0], at[deg][1]) == at[value]
+    written.clear()
+    draw_charts.curves({800: {"Ours": np.full((2, 3), 0.5)}})
+    at = {words: (x, y) for x, y, words in written}
+    assert at["1"][0] < at["2"][0] < at["3"][0]
+    assert at["50 %"][1] == pytest.approx(at["Ours"][1])
+    assert "home 800: right after five looks" in at
+
+
+def test_a_small_loss_is_orange_too():
+    assert draw_charts.shade(-3)[0] > draw_charts.shade(-3)[2]

@@ -48,7 +48,7 @@ def test_the_store_is_told_each_step_with_the_right_reward(score, reward):
 
 def test_the_reward_is_that_of_the_rules_and_who_watches_sees_what_the_store_is_told():
     diary, looks = Diary(), []
-    rules = Rules(length=3, reward=lambda right, belief, done: belief + 10 * right + 100 * done)
+    rules = Rules(length=3, reward=lambda right, belief, done, **_: belief + 10 * right + 100 * done)
     train_nnql(Sense(lambda poses: 0.3 * knows(poses)), Glide(), GRID, starts(6), 0, rules, store=diary,
                watch=lambda step, **what: looks.append(what))
     assert len(looks) == 4

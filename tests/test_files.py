@@ -172,3 +172,20 @@ def test_another_version_is_named(tmp_path):
     other_version(tmp_path / "file.npz")
     with pytest.raises(ValueError, match=f"expected format version {FORMAT}, found {FORMAT + 1}"):
         load_arrays(tmp_path / "file.npz")
+
+
+def test_a_file_is_renamed_within_its_folder_for_no_rename_reaches_another_disk(tmp_path, monkeypatch):
+    moved, replace = [], os.replace
+    monkeypatch.setattr(os, "replace", lambda old, new: moved.append((old, new)) or replace(old, new))
+    write_whole(tmp_path / "a" / "file", b"new")
+    assert [os.path.dirname(path) for path in moved[0]] == [str(tmp_path / "a")] * 2
+
+
+def test_a_write_leaves_the_mask_of_rights_as_it_was(tmp_path):
+    before = os.umask(0o027)
+    try:
+        write_whole(tmp_path / "ours", b"")
+        assert (tmp_path / "ours").stat().st_mode & 0o777 == 0o640
+        assert os.umask(0o027) == 0o027
+    finally:
+        os.umask(before)

@@ -203,6 +203,7 @@ def test_a_store_of_another_seed_learns_from_other_starts(parts, tmp_path, monke
         learned.q_values(tmp_path, senses, None, grid, 6, seed, {}, silent)
     assert starts[0].shape == starts[1].shape == (6, 3)
     assert (starts[0] != starts[1]).all()
+    assert not np.isin(starts[0], senses.world.free_poses(6, np.random.default_rng(0))).any()  # where the GCN learns
 
 
 def test_the_best_sequence_is_the_winner_of_a_race_from_random_starts(parts):

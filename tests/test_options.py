@@ -46,6 +46,10 @@ def test_what_is_enough_is_enough(monkeypatch):
     a = ranking(3, 1)
     steps, seen, *_ = lived(*[(a, 0, a, 3)] * 9).arrays()
     assert len(steps) == len(seen) == 5
+    experience, four = Experience(), np.tile(a, (4, 1))
+    for step in range(9):
+        experience.watch(step, four, np.zeros(4, int), four, np.zeros(4, int))
+    assert len(next(experience.arrays())) == 8  # four robots side by side
 
 
 def test_a_small_case_by_hand():

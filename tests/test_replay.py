@@ -1,5 +1,7 @@
 """The replay: it shows the episode that was, in as many frames as it has looks, decisions and ways between."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -126,3 +128,53 @@ def test_an_episode_of_one_look_is_one_frame(parts):
     looks = replay.collect(senses, robot, grid, planners.stay, START, SEED)
     assert len(looks) == len(replay.frames(looks, world, grid)) == 1
     assert replay.gif(replay.frames(looks, world, grid)).startswith(b"GIF89a")
+
+
+def test_a_frame_shows_the_look_that_it_is_of(parts, looks, monkeypatch):
+    drawn, words, page = {}, [], replay.Map(parts[0], 412, 412, parts[1])
+    for name in ("particles", "place", "sight", "path", "robot"):
+        monkeypatch.setattr(replay.Map, name, lambda _, what, *more, name=name: drawn.update({name: (what, *more)}))
+    monkeypatch.setattr(canvas.Canvas, "text", lambda _, at, text, *how, **more: words.append(text))
+    for wrong, verdict, colour in ((0, "right", canvas.RIGHT), (1, "wrong", canvas.WRONG)):
+        look, pose = replace(looks[1], answer=looks[1].place + wrong), looks[1].pose + 0.1
+        replay._frame(page, [], [looks[0], look, looks[2]], 1, pose, "turning left", 0)
+        assert drawn["place"] == (look.answer, colour)
+        assert drawn["particles"][0] is look.particles
+        assert drawn["robot"][0] is drawn["sight"][0] is pose
+        np.testing.assert_array_equal(drawn["path"][0], [looks[0].pose, look.pose, pose])
+        assert {f"answer {verdict}", "look 2 of 3"} <= set(words)
+        words.clear()
+
+
+def test_between_two_looks_the_robot_goes_the_short_way_and_the_words_say_how(parts, looks, monkeypatch):
+    shown = []
+    monkeypatch.setattr(replay, "_frame", lambda _home, _panel, _looks, t, pose, *doing: shown.append((t, pose, doing)))
+    first, second = (replace(looks[i], pose=np.array([3.0, 1, theta])) for i, theta in ((0, 3.0), (1, -3.0)))
+    replay.frames([first, replace(second, bumped=True, action=1)], *parts[:2])
+    assert [t for t, *_ in shown] == [0] * 5 + [1]
+    ends = np.linspace(3.0, 2 * np.pi - 3.0, 5)  # across the bearing where angles begin anew
+    assert [pose[2] % (2 * np.pi) for _, pose, _ in shown] == pytest.approx([3.0, *ends])
+    assert [doing for *_, doing in shown] == [("at the start",), ("decides to turn right", 1),
+                                              *[("turning right", 1)] * 3, ("after a bump",)]
+
+
+def test_bars_of_actions_go_to_the_right_for_more_and_the_chosen_one_is_orange():
+    picture = np.array(replay._actions(np.array([0.2, -0.1, 0.4]), 2))[:, 60:]
+    left, right = zip(*(np.nonzero((picture[19 * a + 5:19 * a + 8] == colour).all(2))[1][[0, -1]] for a, colour in
+                        enumerate((canvas.BAR, canvas.BAR, canvas.ROBOT))), strict=True)
+    assert left[1] < right[1] < left[0] < right[0] < right[2]
+    assert left[0] == pytest.approx(left[2], abs=2)
+
+
+def test_the_panels_are_of_the_look_and_ticks_of_the_answers_so_far(parts, looks, monkeypatch):
+    ranked, ticks, valued = [], [], []
+    monkeypatch.setattr(draw, "ranks", lambda _grid, values, *_: ranked.append(values) or Image.new("RGB", (9, 9)))
+    monkeypatch.setattr(replay, "_tick", lambda _page, _at, *right: ticks.append(right))
+    monkeypatch.setattr(replay, "_actions", lambda q, chosen: valued.append((q, chosen)) or Image.new("RGB", (9, 9)))
+    film = [replace(look, answer=look.place + wrong) for look, wrong in zip(looks, (1, 0, 1), strict=True)]
+    panel = replay._panels(film[1], parts[1])
+    assert ranked[0] is film[1].states
+    assert ranked[1] is film[1].pooled
+    replay._frame(replay.Map(parts[0], 412, 412, parts[1]), panel, film, 1, film[1].pose, "", 2)
+    assert ticks == [(False,), (True,), ()]
+    assert valued == [(film[1].q, 2)]

@@ -346,3 +346,9 @@ def test_the_whole_table_is_75_cells_and_repeats_multiply_it():
     assert {cell.world for cell in cells} == {800, 801, 809}
     assert {cell.seed for cell in cells} == {3, 4}
     assert len({(cell.t_xy_m, cell.t_theta_deg) for cell in cells}) == 25
+
+
+def test_no_noise_is_a_noise_that_can_be_asked_for():
+    args = SimpleNamespace(worlds=table.WORLDS, gaps=None, episodes=None, tests=None, noise=0.0, seed=0, repeats=1,
+                           jobs=1, quick=True)
+    assert table.check(args)[0].noise == 0

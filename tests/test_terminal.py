@@ -42,8 +42,9 @@ def test_where_there_is_no_terminal_only_the_end_of_a_stage_is_printed(clock):
     clock.now += 12.0
     stage(0.5, "loss 0.31")
     assert stream.getvalue() == ""
+    clock.now += 4.0
     stage.done("91% right")
-    assert stream.getvalue() == "net      " + "91% right".ljust(76) + "  12.0 s\n"
+    assert stream.getvalue() == "net      " + "91% right".ljust(76) + "  16.0 s\n"
 
 
 def test_on_a_terminal_a_stage_shows_how_far_it_is_and_leaves_one_line(clock):

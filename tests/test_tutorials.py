@@ -78,6 +78,16 @@ def test_a_page_runs_in_its_folder_and_leaves_the_current_one_as_it_was(tmp_path
     assert Path.cwd() == before
 
 
+def test_a_chapter_that_is_none_is_one_line(capsys):
+    with pytest.raises(SystemExit) as exit:
+        runner.main(["00", "99"])
+    assert exit.value.code == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert err.startswith("tutorials/run.py: expected chapters of 00, 01, ")
+    assert err.endswith(", 12, found 99\n")
+
+
 @pytest.fixture(scope="module")
 def quick_senses():
     """Six chapters ask for senses that learned in one and the same home: they learn once, and each gets a copy."""
@@ -123,6 +133,29 @@ def test_the_solutions_are_right(exercises):
     tasks, solutions = load(exercises).TASKS, load(TUTORIALS / "solutions" / f"sol_{number(exercises)}.py")
     for answer, check in tasks.values():
         check(getattr(solutions, answer.__name__))
+
+
+def nearest_that_covers(begin, end, n):
+    rows = np.arange(n)
+    covers = (begin[:, None] <= rows) & (rows < end[:, None])
+    return np.where(covers.any(0), covers.argmax(0), -1) if len(begin) else np.full(n, -1)
+
+
+def entry_and_exit(faces, others, s):
+    enter, leave = ((lines[:, :1] + lines[:, 1:] * s) for lines in (faces, others))
+    enter, leave = enter.min(0), leave.max(0)
+    return np.where((enter > 0) & (enter > leave), enter, 0)
+
+
+def turned(centre, half, angle):
+    ahead, left = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    return [centre + u * half[0] * ahead + v * half[1] * left for u, v in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+
+
+@pytest.mark.parametrize(("task", "answer"), [("1.2", turned), ("2.3", entry_and_exit), ("3.3", nearest_that_covers)])
+def test_an_answer_is_given_the_arrays_that_its_stub_promises(task, answer):
+    _, check = load(TUTORIALS / "exercises" / f"ex_0{task[0]}.py").TASKS[task]
+    check(answer)
 
 
 @pytest.mark.parametrize("exercises", EXERCISES, ids=number)

@@ -46,6 +46,20 @@ def inner_door(**door):
     return plan
 
 
+@pytest.mark.parametrize(("walls", "lost"), [([[4, 0, 4, 1], [4, 1.9, 4, 4]], []), ([[4, 0, 4, 4]], ["kitchen"]),
+                                             ([[4, 0, 4, 1.8], [4, 1.9, 4, 4]], ["kitchen"])])
+def test_a_room_that_no_robot_gets_into_is_named(two_rooms_plan, walls, lost):
+    two_rooms_plan["walls"][-2:] = walls
+    two_rooms_plan["doors"].pop()
+    assert World(two_rooms_plan).out_of_reach() == lost
+
+
+def test_spots_in_a_room_are_those_of_a_raster_within_its_corners(two_rooms):
+    corner = {"polygon": [[0, 0], [1, 0], [1, 0.5], [0.5, 0.5], [0.5, 1], [0, 1]]}
+    expected = {(x, y) for x in (0.25, 0.75) for y in (0.25, 0.75)} - {(0.75, 0.75)}
+    assert set(map(tuple, two_rooms.spots_in(corner, 0.5).tolist())) == expected
+
+
 def test_a_real_home_has_free_poses_that_are_free_and_inside(real_home):
     poses = real_home.free_poses(200, np.random.default_rng(0))
     b = real_home.blocks

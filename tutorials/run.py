@@ -46,6 +46,11 @@ def chapters():
 
 def main(names):
     """Run the chapters named, or all: a line each."""
+    for name in names:
+        if not any(name in (page.stem, page.stem[:2]) for page in chapters()):
+            known = ", ".join(page.stem[:2] for page in chapters())
+            print(f"tutorials/run.py: expected chapters of {known}, found {name}", file=sys.stderr)
+            sys.exit(2)
     chosen = [page for page in chapters() if not names or page.stem in names or page.stem[:2] in names]
     for page in chosen:
         start = time.perf_counter()

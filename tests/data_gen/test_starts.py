@@ -10,6 +10,7 @@ from data_gen.rooms import make_home
 from data_gen.starts import beyond_gap, draw_starts, starts_of, training_starts
 from gnl.canvas import BELIEF, ROBOT
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
+from gnl.files import load_arrays
 from gnl.places import wrap_angle
 from gnl.world import World
 from tests.conftest import room
@@ -176,3 +177,20 @@ def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     assert capsys.readouterr().err == ("python -m data_gen: --cell: expected WORLD M DEG SEED as in 800 0.2 10 0, "
                                        f"found {words}\n")
     assert not list(tmp_path.iterdir())
+
+
+def test_cells_have_starts_in_their_own_homes_as_many_as_were_asked_for_whatever_was_there(tmp_path):
+    def drawn(n_training, *worlds):
+        words = [word for world in worlds for word in ("--cell", world, "0.2", "10", "0")]
+        with pytest.raises(SystemExit) as exit:
+            main(["starts", str(tmp_path), *words, "--training", str(n_training), "--tests", "30"])
+        assert exit.value.code == 0
+        for world in worlds:
+            starts = load_arrays(tmp_path / f"starts-{world}-0.2m-10deg-seed0.npz")[0]
+            assert [len(starts[name]) for name in ("training", "tests")] == [n_training, 30]
+            home = World.load(tmp_path / f"home-{world}.json")
+            assert all(home.is_reachable(poses[:, :2]).all() for poses in starts.values())
+
+    drawn(40, "801")
+    drawn(40, "800", "801")
+    drawn(50, "801", "800")

@@ -31,6 +31,15 @@ def cells_of_170(*box):
     return word_of(*box, cell=170)
 
 
+def cells_of_171(*box):
+    return word_of(*box, cell=171)
+
+
+def rows_at_200_and_300(label, x0, y0, x1, y1):
+    row = int(y0 + y1 >= 400) + int(y0 + y1 >= 600)
+    return word_of(label, x0, y0, x1, y1) // 9 * 9 + 3 * row + int((x0 + x1) / 2 * 3 // 512)
+
+
 def down_before_across(*box):
     return word_of(*box, by_column=True)
 
@@ -70,7 +79,7 @@ def one_a_class(labels):
 
 WRONG = {
     "5.1": [size_of_the_region, all_pairs, specks_too],
-    "5.2": [strictly_more, cells_of_170, down_before_across],
+    "5.2": [strictly_more, cells_of_170, cells_of_171, rows_at_200_and_300, down_before_across],
     "5.3": [rounded_down, one_more, by_the_width],
     "5.4": [by_corners_too, only_the_pixel_to_the_left, one_a_class],
 }

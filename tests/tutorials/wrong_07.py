@@ -20,5 +20,6 @@ WRONG = {
     "7.4": [lambda i, j: abs(1 / i - 1 / j), lambda i, j: 2 ** 0.5 * (1 / i - 1 / j),
             lambda i, j: 2 ** 0.5 * abs(i - j), lambda i, j: 2 * (1 / i - 1 / j) ** 2],
     "7.5": [lambda looks: looks.sum(0).argmax(), lambda looks: rank(looks).sum(0).argmin(),
-            lambda looks: (1 / rank(looks, axis=0)).sum(0).argmax(), lambda looks: rank(looks).sum(0).argmax()],
+            lambda looks: (1 / rank(looks, axis=0)).sum(0).argmax(), lambda looks: rank(looks).sum(0).argmax(),
+            lambda looks: np.bincount(looks.argmax(1)).argmax()],
 }

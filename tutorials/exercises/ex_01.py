@@ -39,9 +39,10 @@ def grade_1_1(numbers_of_places):
 
 
 def grade_1_2(corners):
-    expect("box along the axes", corners((3.0, 1.0), (0.5, 0.2), 0.0), [[3.5, 1.2], [2.5, 1.2], [2.5, 0.8], [3.5, 0.8]])
-    expect("a quarter turn", corners((0.0, 0.0), (2.0, 1.0), np.pi / 2), [[-1, 2], [-1, -2], [1, -2], [1, 2]])
-    expect("turned by 0.3 rad", np.round(corners((1.0, 2.0), (2.0, 1.0), 0.3), 4),
+    along_axes, quarter, turned = np.array([[[3, 1], [0.5, 0.2]], [[0, 0], [2, 1]], [[1, 2], [2, 1]]])
+    expect("box along the axes", corners(*along_axes, 0.0), [[3.5, 1.2], [2.5, 1.2], [2.5, 0.8], [3.5, 0.8]])
+    expect("a quarter turn", corners(*quarter, np.pi / 2), [[-1, 2], [-1, -2], [1, -2], [1, 2]])
+    expect("turned by 0.3 rad", np.round(corners(*turned, 0.3), 4),
            [[2.6152, 3.5464], [-1.2062, 2.3643], [-0.6152, 0.4536], [3.2062, 1.6357]])
 
 

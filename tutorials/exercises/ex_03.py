@@ -46,11 +46,14 @@ def grade_3_2(lowest_bit):
 
 
 def grade_3_3(visible):
-    expect("the column of the chapter", visible([10, 9, 6, 0, 8], [13, 10, 11, 8, 16], 16),
+    def column(*intervals):
+        return np.array(intervals, int).reshape(-1, 2).T
+
+    expect("the column of the chapter", visible(*column((10, 13), (9, 10), (6, 11), (0, 8), (8, 16)), 16),
            [3] * 6 + [2] * 3 + [1] + [0] * 3 + [4] * 3)
-    expect("nothing there", visible([], [], 3), [-1, -1, -1])
-    expect("a gap, and one behind another", visible([1, 0, 5], [3, 2, 6], 6), [1, 0, 0, -1, -1, 2])
-    expect("a far one behind two near ones", visible([0, 4, 1], [2, 5, 6], 7), [0, 0, 2, 2, 1, 2, -1])
+    expect("nothing there", visible(*column(), 3), [-1, -1, -1])
+    expect("a gap, and one behind another", visible(*column((1, 3), (0, 2), (5, 6)), 6), [1, 0, 0, -1, -1, 2])
+    expect("a far one behind two near ones", visible(*column((0, 2), (4, 5), (1, 6)), 7), [0, 0, 2, 2, 1, 2, -1])
 
 
 def grade_3_4(top_of_wall):

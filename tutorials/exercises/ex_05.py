@@ -46,6 +46,8 @@ def grade_5_2(word):
     expect("S = 6 S_o", word(3, 0, 0, 384, 256), 100)
     expect("a centre that is no whole number, just before the line", word(5, 120, 0, 221, 80), 135)
     expect("a centre just behind the line", word(5, 121, 0, 222, 80), 136)
+    expect("just before and behind the other line", [word(0, 340, 0, 342, 1), word(0, 340, 0, 343, 1)], [1, 2])
+    expect("the lines between rows", [word(0, 0, y, 1, y + 1) for y in (170, 171, 340, 341)], [0, 3, 3, 6])
     expect("right and high, left and low", [word(0, 400, 0, 500, 100), word(0, 0, 400, 100, 500)], [2, 6])
 
 

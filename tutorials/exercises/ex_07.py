@@ -61,6 +61,7 @@ def grade_7_5(fuse):
     expect("two agree", fuse(np.array([[9.0, 8, 7, 6], [6, 9, 8, 7], [6, 9, 7, 8]])), 1)
     expect("one has much greater scores", fuse(np.array([[100.0, 2, 3, 4], [1, 2, 3, 9], [2, 3, 1, 9]])), 3)
     expect("one look is far off", fuse(np.array([[9.0, 8, 7, 6, 5], [9, 8, 7, 6, 5], [1, 8, 9, 6, 5]])), 0)
+    expect("three first places", fuse(np.array([[9.0, 8, 7, 6], [6, 8, 7, 9], [7, 8, 9, 6]])), 2)
     expect("entry 0", fuse(np.array([[3.0, 2, 1]])), 0)
 
 
