@@ -1,5 +1,7 @@
 """Cross-view starts: tests uniform in free space; training beyond the gap from the nearest, and else uniform, too."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -20,7 +22,9 @@ N_TESTS = 100
 
 @pytest.fixture(autouse=True)
 def fewer_at_once(monkeypatch):
+    """And in this process; test_table.py draws starts in others."""
     monkeypatch.setattr(starts_module, "DRAWN_AT_ONCE", 20_000)
+    monkeypatch.setattr(starts_module, "processes", ThreadPoolExecutor)
 
 
 @pytest.fixture(scope="module", params=[800, 801, 809])
