@@ -1,7 +1,7 @@
 """The graph convolution network: from a scene graph to scores of the places (section IV-B).
 
-Two graph convolutions, the mean over nodes, a linear map. (The paper refers to an earlier one for its network, of
-which no code is published; ours is after the group's code of 2021, sums normalised as in Kipf and Welling 2017.)
+Two graph convolutions, the mean over nodes, a linear map. (The paper takes its network from an earlier one of the
+group's; ours is after the group's code of 2021, with sums over neighbours normalised as in Kipf and Welling 2017.)
 
     H1 = ReLU(A_hat X W1 + b1)    X one-hot words, so X W1 is a lookup of rows of W1
     H2 = ReLU(A_hat H1 W2 + b2)   A_hat = D^-1/2 (A + I) D^-1/2

@@ -197,20 +197,32 @@ def test_quick_senses_look_by_true_labels_and_know_their_home_in_64_bits(parts):
 
 def test_a_store_of_another_seed_learns_from_other_starts(parts, tmp_path, monkeypatch):
     senses, grid, _ = parts
-    starts = []
-    monkeypatch.setattr(episode, "train_nnql", lambda *args, **_: starts.append(args[3]) or NNQL(grid.n_places, 3))
+    starts, seeds = [], []
+
+    def train_nnql(_senses, _robot, _grid, poses, seed, **_):
+        starts.append(poses)
+        seeds.append(seed)
+        return NNQL(grid.n_places, 3)
+
+    monkeypatch.setattr(episode, "train_nnql", train_nnql)
     for seed in (0, 1):
         learned.q_values(tmp_path, senses, None, grid, 6, seed, {}, silent)
+    assert seeds == [0, 1]
     assert starts[0].shape == starts[1].shape == (6, 3)
     assert (starts[0] != starts[1]).all()
     assert not np.isin(starts[0], senses.world.free_poses(6, np.random.default_rng(0))).any()  # where the GCN learns
 
 
-def test_the_best_sequence_is_the_winner_of_a_race_from_random_starts(parts):
+def test_the_best_sequence_is_the_winner_of_a_race_from_random_starts(parts, monkeypatch):
     senses, grid, _ = parts
     starts = senses.world.free_poses(2, np.random.default_rng([7, 2]))
     sequences, _ = episode.race(senses, Robot(senses.world), grid, starts, 7)
     np.testing.assert_array_equal(learned.best_sequence(senses, grid, 2, 7), sequences[0])
+    raced = []
+    monkeypatch.setattr(episode, "race", lambda *args: raced.append(args[3:]) or ([[0]], [1]))
+    learned.best_sequence(senses, grid, 2, 7)
+    np.testing.assert_array_equal(raced[0][0], starts)
+    assert raced[0][1:] == (7,)
 
 
 def test_top_places_are_shares_of_views_whose_place_is_first_and_among_three():

@@ -108,6 +108,15 @@ def test_a_mistake_is_one_line_on_stderr_and_status_2(capsys, kind):
     assert err.count("\n") == 1
 
 
+def test_who_stops_listening_ends_the_run_with_the_status_of_a_broken_pipe():
+    code = "from gnl.terminal import guarded; guarded('p', lambda: [print(i) for i in range(100_000)])"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 128 + signal.SIGPIPE
+
+
 def test_an_interruption_is_one_line_on_stderr_and_status_130(capsys):
     assert leave(stop, KeyboardInterrupt()) == 130
     out, err = capsys.readouterr()
