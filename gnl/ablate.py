@@ -84,14 +84,14 @@ def name_of(choice, cell):
 def measure(choice, cell, senses, starts):
     """Outcomes of MV and of Ours under a choice, and what they cost."""
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
-    learning = learning.spawn(1)[0] if choice.luck else learning
+    learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
     senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
     with in_place(choice.constants):
         if choice.true_labels:
             senses.net = None
         if choice.anew:
             how = {"epochs": SETTINGS.gcn_epochs, "batch": SETTINGS.gcn_batch, "rate": SETTINGS.gcn_rate}
-            senses.gcn = learned.learn_places(senses, grid, SETTINGS.gcn_views, 0, **how)
+            senses.gcn = learned.learn_places(senses, grid, SETTINGS.gcn_views, choice.luck, **how)
         robot = Robot(senses.world, choice.motion)
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):

@@ -32,7 +32,7 @@ class Choice:
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
     anew: bool = False
-    luck: bool = False  # the same choice as ours, but another seed of the training
+    luck: int = 0  # which other seed of NNQL's training, and of the classifier's if it learns anew; 0: ours
 
 
 def probabilities(scores, _particles, _actions):
@@ -206,6 +206,8 @@ CHOICES = [
     Choice("actions: which", "left and forward", constants={
         "ablate.Robot": LeftOrForward, "ablate.N_ACTIONS": 2, "planners.N_ACTIONS": 2}),
     Choice("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
+    *(Choice("state", f"probabilities, seed {n}", Rules(state=probabilities), {"index": BruteForce}, luck=n)
+      for n in range(1, 5)),
     Choice("state", "best place, one-hot", Rules(state=best_place), {"index": BruteForce}),
     Choice("state", "the filter's ranks", Rules(state=filter_ranks)),
     Choice("state", "the filter's ranks, max", Rules(state=partial(filter_ranks, pooling="max"))),
@@ -223,6 +225,7 @@ CHOICES = [
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
     Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),
     Choice("order of learning", "one robot at a time", of_training={"episode.SIDE_BY_SIDE": 1}),
-    Choice("luck of the training", "another seed", luck=True),
+    *(Choice("luck of the training", f"seed {n}", luck=n) for n in range(1, 9)),
+    *(Choice("luck of the classifier", f"seed {n}", anew=True, luck=n) for n in range(1, 5)),
 ]
 OURS, TRUE_LABELS = Choice("all", "ours"), CHOICES[0]

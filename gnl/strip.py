@@ -138,10 +138,9 @@ def _columns_of_faces(axes, near, far, n_columns):
     along_0 = np.array([near[0], near[0], np.where(outside[1], far[0], near[0])])
     along_1 = np.array([np.where(outside[0], far[1], near[1]), near[1], near[1]])
     x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        column = np.ceil((1 - y / x / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5)
-    # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
     front = x > IN_FRONT_M
+    column = np.ceil((1 - y / np.where(front, x, 1) / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5)
+    # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
     first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
     behind = np.array([first, np.where(front[0], C - first, first), C - first])
     column = np.where(front, column, behind).clip(0, C).astype(int)

@@ -54,7 +54,7 @@ def test_every_choice_runs_and_leaves_no_trace(choice, parts, monkeypatch):
 
 
 OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Motion(forward_m=1.0), true_labels=True,
-               anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3})
+               anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3}, luck=2)
 
 
 @pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
@@ -63,7 +63,7 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
     def learn_places(senses, grid, n_views, seed, **how):
-        learnt.append((senses.net, n_views, how))
+        learnt.append((senses.net, n_views, seed, how))
         return "another GCN"
 
     def train_nnql(senses, robot, grid, poses, seed, rules, store):
@@ -85,7 +85,7 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     result, _ = ablate.measure(choice, CELL, senses, starts)
     net, s = None if choice.true_labels else senses.net, ablate.SETTINGS
     how = {"epochs": s.gcn_epochs, "batch": s.gcn_batch, "rate": s.gcn_rate}
-    assert learnt == ([(net, s.gcn_views, how)] if choice.anew else [])
+    assert learnt == ([(net, s.gcn_views, 2, how)] if choice.anew else [])
     there = 0.7 if choice is OTHER else height
     assert trained == [(net, "another GCN" if choice.anew else gcn, choice.motion, choice.rules, there)] * 3
     assert tested[0] != tested[1] == tested[2]
@@ -101,11 +101,11 @@ def test_luck_of_the_training_changes_its_seed_alone(parts, monkeypatch):
             return real(*args, **options)
 
         monkeypatch.setattr(episode, name, watched)
-    for choice in (OURS, Choice("a point", "b", luck=True)):
+    for choice in (OURS, Choice("a point", "b", luck=1), Choice("a point", "c", luck=2)):
         ablate.measure(choice, CELL, *parts)
-    (ours, *tests), (luck, *others) = seeds[:3], seeds[3:]
-    assert ours[1] != luck[1]
-    assert tests == others
+    (ours, *tests), (one, *others), (two, *more) = seeds[:3], seeds[3:6], seeds[6:]
+    assert len({ours[1], one[1], two[1]}) == 3
+    assert tests == others == more
 
 
 def test_a_constant_is_another_one_for_a_time_and_then_ours_again_even_after_a_fault():
@@ -138,9 +138,10 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
             assert len(changed) == len(choice.constants | choice.of_training)
             assert camera.FIELD_OF_VIEW_RAD == strip.FIELD_OF_VIEW_RAD
         assert choice.true_labels >= any("camera" in name for name in choice.constants)  # no net knows such views
-        changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck))
+        changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck,
+                        choice.anew and choice.luck))
         assert choice.store.get("k") != nnql.K_NEIGHBOURS
-    ours = OURS.rules, OURS.store, OURS.motion, {}, False, False
+    ours = OURS.rules, OURS.store, OURS.motion, {}, False, 0, False
     assert all(one != other for one, other in itertools.combinations([ours, *changes], 2))
 
 
