@@ -57,8 +57,11 @@ def run(args):
     if todo:
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
-            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], load_arrays(starts_of(out, cell))[0])
+            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in CELLS}
+            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS)
                            for name, (choice, cell) in todo.items()], SETTINGS.episodes, pool, "ablate")
+    if len(todo) < len(jobs):
+        print(f"{len(jobs) - len(todo)} of {len(jobs)} runs were there before, in {out / 'cells'}")
     measured = effects(out, chosen)
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
     if page:
@@ -81,7 +84,7 @@ def name_of(choice, cell):
     return "-".join(re.findall(r"[\w.]+", f"{choice.point} {choice.other}")) + f"-{cell.name}"
 
 
-def measure(choice, cell, senses, starts):
+def measure(choice, cell, senses, starts, settings):
     """Outcomes of MV and of Ours under a choice, and what they cost."""
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
@@ -90,8 +93,8 @@ def measure(choice, cell, senses, starts):
         if choice.true_labels:
             senses.net = None
         if choice.anew:
-            how = {"epochs": SETTINGS.gcn_epochs, "batch": SETTINGS.gcn_batch, "rate": SETTINGS.gcn_rate}
-            senses.gcn = learned.learn_places(senses, grid, SETTINGS.gcn_views, choice.luck, **how)
+            how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
+            senses.gcn = learned.learn_places(senses, grid, settings.gcn_views, choice.luck, **how)
         robot = Robot(senses.world, choice.motion)
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):

@@ -14,7 +14,7 @@ import numpy as np
 from .classes import CEILING, FLOOR
 from .photo import check_noise, photograph
 from .places import check_poses
-from .strip import FACES, FIELD_OF_VIEW_RAD, NEAREST_M, TOP, UNDERSIDE, cast
+from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim
 
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
@@ -89,7 +89,7 @@ def look(world, poses, size=SIZE_PX):
 
 def row_of(z, w, size):
     """Row coordinate y [px] of height z [m] at inverse depth w [1/m]."""
-    return (1 - (z - HEIGHT_M) * w / np.tan(FIELD_OF_VIEW_RAD / 2)) * (size / 2)
+    return (1 - (z - HEIGHT_M) * w / rim()) * (size / 2)
 
 
 def _pile(world, strip, size):

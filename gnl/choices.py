@@ -1,6 +1,8 @@
 """Other choices than ours where the paper is open: `python -m gnl ablate` measures what each would change.
 
-A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name.
+A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name: one that is
+read when it is used, not a default, such as N_PARTICLES, which is read when its function is defined (for those there
+is `partial`). Its functions are those of a module, for it travels to other processes.
 """
 
 from dataclasses import dataclass, field
@@ -175,13 +177,12 @@ class BruteForce:
         return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)
 
 
-FIELD_OF_VIEW = "camera.FIELD_OF_VIEW_RAD", "strip.FIELD_OF_VIEW_RAD"
 CHOICES = [
     Choice("labels of the views", "true labels", true_labels=True, anew=True),
     Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),
-    Choice("field of view", "60 degrees", constants=dict.fromkeys(FIELD_OF_VIEW, np.pi / 3), true_labels=True,
+    Choice("field of view", "60 degrees", constants={"strip.FIELD_OF_VIEW_RAD": np.pi / 3}, true_labels=True,
            anew=True),
-    Choice("field of view", "120 degrees", constants=dict.fromkeys(FIELD_OF_VIEW, 2 * np.pi / 3), true_labels=True,
+    Choice("field of view", "120 degrees", constants={"strip.FIELD_OF_VIEW_RAD": 2 * np.pi / 3}, true_labels=True,
            anew=True),
     Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),

@@ -2,7 +2,7 @@
 
     d_i = right_i(A) - right_i(B) in {-1, 0, 1},   interval = mean(d) +- 1.96 std(d) / sqrt(n)
 
-Pairs share start, noise and particles, so d varies far less than the difference of two independent percentages. Over
+Pairs share start, noise and particles, so d varies less than the difference of two independent percentages. Over
 many cells the cells are what varies, too: the bootstrap draws whole cells (clusters), not episodes.
 """
 
@@ -42,7 +42,10 @@ def mcnemar(a, b):
 
     n_A, n_B : pairs in which A alone, B alone was right
     """
-    a, b = np.asarray(a, bool), np.asarray(b, bool)
+    a, b = np.asarray(a), np.asarray(b)
+    if a.shape != b.shape or a.ndim != 1 or not (np.isin(a, (0, 1)).all() and np.isin(b, (0, 1)).all()):
+        raise ValueError(f"pairs: expected two equal lists of right (1) and wrong (0), found {a} and {b}")
+    a, b = a.astype(bool), b.astype(bool)
     n_a, n_b = int((a & ~b).sum()), int((b & ~a).sum())
     return min(1.0, 2 * bdtr(min(n_a, n_b), n_a + n_b, 0.5))
 

@@ -1,4 +1,7 @@
-"""Scene graphs of label images from elsewhere, printed and drawn: any picture of class indices, ours or ADE20K's."""
+"""Scene graphs of label images from elsewhere, printed and drawn: any picture of class indices, ours or ADE20K's.
+
+A picture all in our colours is read by them: a drawing program may have put its palette in another order.
+"""
 
 from pathlib import Path
 
@@ -6,14 +9,14 @@ import numpy as np
 from PIL import Image
 
 from . import draw
-from .classes import CLASSES, N_CLASSES, from_ade20k
+from .classes import CLASSES, N_CLASSES, PALETTE, from_ade20k
 from .scene_graph import VIEW_PX, scene_graph, words_in_words
 
 
 def add_arguments(parser):
     """Options of `python -m gnl graph`."""
     parser.add_argument("labels", help="image of one class index a pixel, 0..9 in the order "
-                                       f"{', '.join(CLASSES)}")
+                                       f"{', '.join(CLASSES)}, or in the colours of our pictures")
     parser.add_argument("--ade20k", action="store_true", help="the indices are ADE20K's 0..150, 0 for no label")
     parser.add_argument("--out", help="picture to write, scaled to 512 x 512 as the boxes "
                                       "are (LABELS-graph.png beside the image)")
@@ -55,6 +58,10 @@ def load(path, ade20k=False):
         raise ValueError(f"{path}: expected an image, found something else ({error})") from None
     if image.format == "JPEG":
         raise ValueError(f"{path}: expected an image that keeps indices as they are, such as PNG, found JPEG")
+    if image.mode in ("RGB", "P") and not ade20k:
+        labels = by_colour(np.array(image.convert("RGB")))
+        if labels.max() < N_CLASSES:
+            return labels
     if image.mode not in ("L", "P", "I", "I;16", "1"):
         raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
     labels = np.array(image).astype(int)
@@ -63,3 +70,11 @@ def load(path, ade20k=False):
         hint = "" if ade20k or labels.max() > 150 else "; --ade20k for indices of ADE20K"
         raise ValueError(f"{path}: expected indices 0..{highest}, found {labels.min()}..{labels.max()}{hint}")
     return from_ade20k(labels) if ade20k else labels
+
+
+def by_colour(rgb):
+    """Labels (H, W) of a picture (H, W, 3) in the colours of PALETTE; N_CLASSES where there is another one."""
+    labels = np.full(rgb.shape[:2], N_CLASSES)
+    for label, colour in enumerate(PALETTE):
+        labels[(rgb == colour).all(-1)] = label
+    return labels

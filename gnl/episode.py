@@ -115,6 +115,8 @@ def run_all(senses, robot, grid, plan, starts, seed, **options):
 
 def side_by_side(starts):
     """The starts (n, ...) in as few groups of at most SIDE_BY_SIDE as there can be, of equal size or nearly so."""
+    if not len(starts):
+        raise ValueError("starts: expected at least one, found none")
     return np.array_split(starts, -(-len(starts) // SIDE_BY_SIDE))
 
 

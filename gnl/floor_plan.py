@@ -7,9 +7,9 @@
      "objects": [{"class": "bed", "polygon": [[x, y], ...], "z0": 0.0, "height": 0.5, "color": [r, g, b]}],
      "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
 
-Metres; `height` is an object's own extent above `z0`. There must be `walls`; of a door its segment, of a room its
-polygon, of an object class, polygon and height. Keys that are not listed are left as they are. Each fault is one
-ValueError: file, place in the file, what was expected, what was found.
+Metres; `height` is an object's own extent above `z0`; walls end where a door begins. There must be `walls`; of a door
+its segment, of a room its polygon, of an object class, polygon and height. Keys that are not listed are left as they
+are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
 """
 
 import json
@@ -56,7 +56,7 @@ def check(plan, source="floor plan"):
             fail(place, "a number" if at_least == -math.inf else f"a number >= {at_least:g}", value)
 
     def numbers(value, count, place):
-        if not isinstance(value, list) or len(value) != count:
+        if not isinstance(value, (list, tuple)) or len(value) != count:
             fail(place, f"a list of {count} numbers", value)
         for item in value:
             number(item, place)
@@ -67,7 +67,7 @@ def check(plan, source="floor plan"):
             fail(place, "two different end points", value)
 
     def polygon(value, place):
-        if not isinstance(value, list) or len(value) < 3:
+        if not isinstance(value, (list, tuple)) or len(value) < 3:
             fail(place, "a polygon of at least 3 points", value)
         for point in value:
             numbers(point, 2, place)

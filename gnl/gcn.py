@@ -78,6 +78,12 @@ def lookup_backward(dout, words, n_words):
     return sparse(np.ones(len(words), dout.dtype), nodes, np.append(0, count.cumsum()), len(words)) @ dout
 
 
+def _check_words(words, n_words):
+    """ValueError for words that are not among 0 .. n_words - 1."""
+    if words.min(initial=0) < 0 or words.max(initial=0) >= n_words:
+        raise ValueError(f"words: expected 0..{n_words - 1}, found {words.min()}..{words.max()}")
+
+
 class GCN:
     """Parameters and passes of the network; `n_words` and `hidden` as one likes."""
 
@@ -99,9 +105,7 @@ class GCN:
 
     def scores(self, graphs):
         """Scores of all places for each graph: SceneGraphs -> (B, K)."""
-        n_words = len(self.params["W1"])
-        if graphs.words.max(initial=0) >= n_words:
-            raise ValueError(f"words: expected 0..{n_words - 1}, found {graphs.words.max()}")
+        _check_words(graphs.words, len(self.params["W1"]))
         return self.forward(graphs)[0]
 
     def forward(self, graphs):
@@ -150,7 +154,12 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
 
     graphs : SceneGraphs of n views; places (n,) int; progress(share done, loss) is called after each epoch
     """
-    places = np.asarray(places)
+    places, (i, j) = np.asarray(places), graphs.edges.reshape(-1, 2).T
+    _check_words(graphs.words, len(gcn.params["W1"]))
+    graph = np.repeat(np.arange(len(graphs)), np.diff(graphs.starts))
+    once = len(np.unique(i * len(graph) + j)) == len(i)
+    if not once or not (i < j).all() or (graph[i] != graph[j]).any():
+        raise ValueError("edges: expected pairs of nodes i < j of one graph, each once, found others")
     if places.shape != (len(graphs),) or not len(places):
         raise ValueError(f"places: expected one for each of the {len(graphs)} graphs, found shape {places.shape}")
     if not 0 <= places.min() <= places.max() < gcn.n_places:

@@ -125,13 +125,14 @@ def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.
     return network
 
 
-def quick_senses(world, n_views=2000, seed=0):
+def quick_senses(world, n_views=2000, seed=0, grid=None):
     """Senses to try things with: true labels, no noise, and a GCN that has learned the places in seconds.
 
     It learns in 64 bits, so that rounding decides nothing, and from poses that default_rng(seed) does not draw.
     """
-    grid, senses = PlaceGrid(world), Senses(world, None, None, noise=0)
-    senses.gcn = learn_places(senses, grid, n_views, [seed, 1], dtype=float, epochs=10, batch=64, rate=0.01)
+    senses = Senses(world, None, None, noise=0)
+    senses.gcn = learn_places(senses, grid or PlaceGrid(world), n_views, [seed, 1], dtype=float, epochs=10, batch=64,
+                              rate=0.01)
     return senses
 
 

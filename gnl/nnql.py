@@ -114,6 +114,7 @@ class NNQL:
         # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
         # several met is changed by one after the other.
         states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
+        rewards, done = np.asarray(rewards, float), np.asarray(done, bool)
         if not (np.isin(actions, range(len(self.index))).all() and np.isfinite(rewards).all()):
             raise ValueError(f"actions, rewards: expected 0..{len(self.index) - 1} and finite numbers, "
                              f"found {actions}, {rewards}")

@@ -10,7 +10,7 @@ fixed sequences, of which the options are three:
 
     s, s'  a state (B, K), a remembered one          a   the action that is gone on with
     s''    what was seen after a was done in s'      d   steps to go, of L
-    r      1 / rank of the true place in s'': dense and hardly noisy, where right or wrong is mostly luck
+    r      1 / rank of the true place in s'': dense and less noisy than right or wrong, which is mostly luck
     k      many, for values differ little from view to view, and what each of them says is noisy
 
 Where there is little experience the race decides alone, and Ours+ is a scan.
@@ -21,7 +21,7 @@ import numpy as np
 from .robot import N_ACTIONS
 
 K_NEIGHBOURS = 100
-MOST_STEPS = 20_000  # twice as many take four times as long and teach no more
+MOST_STEPS = 20_000  # twice as many take four times as long
 FIRST_VIEWS = 2000  # over which a mean is taken
 AT_ONCE = 64  # queries whose likeness to all that is remembered is held in memory
 

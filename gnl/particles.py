@@ -57,9 +57,10 @@ class ParticleFilter:
     def weigh(self, likelihood):
         """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them."""
         likelihood = np.asarray(likelihood, np.float32)
-        if likelihood.shape != (len(self.x), self.grid.n_places) or not (likelihood >= 0).all():
-            raise ValueError(f"likelihood: expected {len(self.x)} x {self.grid.n_places} numbers from 0 on, "
-                             f"found {likelihood.shape} with least {likelihood.min(initial=0)}")
+        B, K = len(self.x), self.grid.n_places
+        if likelihood.shape != (B, K) or not (np.isfinite(likelihood) & (likelihood >= 0)).all():
+            raise ValueError(f"likelihood: expected {B} x {K} finite numbers from 0 on, found {likelihood.shape} "
+                             f"from {likelihood.min(initial=0)} to {likelihood.max(initial=0)}")
         self.place = np.empty(self.x.shape, int)
         for some in self._groups():
             self.place[some] = self.grid.place_of_xyt(self.x[some], self.y[some], self.theta[some])
@@ -70,7 +71,11 @@ class ParticleFilter:
                 np.divide(weight, total, out=self.weight[b])
 
     def belief(self, n_places, pooling="sum"):
-        """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max")."""
+        """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max").
+
+        Their places are those where they were weighed last; a belief about what comes next is pooled after `predict`
+        and a `weigh` by ones.
+        """
         if pooling not in ("sum", "max"):
             raise ValueError(f'pooling: expected "sum" or "max", found {pooling!r}')
         pooled = np.zeros((len(self.weight), n_places))

@@ -18,6 +18,9 @@ class PlaceGrid:
     def __init__(self, world, cell_m=CELL_M, n_bearings=N_BEARINGS):
         x0, y0, x1, y1 = world.bounds
         self.origin = float(x0), float(y0)
+        if not cell_m > 0 or not isinstance(n_bearings, int | np.integer) or n_bearings < 1:
+            raise ValueError(f"places: expected cells of more than 0 m and a whole number of bearings, "
+                             f"found {cell_m} and {n_bearings}")
         self.cell_m, self.n_bearings = cell_m, n_bearings
         # A home of exactly 12 m has six columns, not seven: forgive a rounding error at the far wall.
         self.nx = max(1, int(np.ceil((x1 - x0) / cell_m - 1e-6)))

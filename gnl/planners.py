@@ -1,7 +1,8 @@
 """Planners: who chooses the next action.
 
 A planner is a function plan(step, states, rng) -> actions (B,): states (B, K) are the reciprocal ranks of the
-latest views, `rng` is the exploration stream. It answers None to end the episode.
+latest views, `rng` is the exploration stream. It answers None to end the episode. A planner that wants more, such as
+the particles, also hands a function to `episode.run` as `watch`, which is called before it.
 """
 
 import itertools
@@ -50,8 +51,9 @@ def go_on(options):
 def explore(nnql, epsilon):
     """Greedy, but by chance in a share epsilon (B,) of the cases: how NNQL gathers experience."""
     def plan(_step, states, rng):
-        best = best_actions(nnql.q_values(states), rng)
-        by_chance, coin = rng.integers(N_ACTIONS, size=len(states)), rng.random(len(states))
+        q = nnql.q_values(states)
+        best = best_actions(q, rng)
+        by_chance, coin = rng.integers(q.shape[1], size=len(q)), rng.random(len(q))
         return np.where(coin < epsilon, by_chance, best)
     return plan
 

@@ -1,4 +1,4 @@
-"""Exact nearest neighbours among reciprocal-rank vectors, many times faster than looking at every vector.
+"""Exact nearest neighbours among reciprocal-rank vectors; where there are many, faster than looking at every one.
 
 The state of nearest-neighbour Q-learning is a ranking of K places, written as 1/rank: every vector is a
 permutation of (1, 1/2, ..., 1/K). So all have one length, the nearest is the one with the greatest dot
@@ -184,8 +184,8 @@ class RankIndex:
         wrong = np.sort(points, axis=1) != self._values
         if wrong.any():
             check_points(points, len(self._values))
-            raise ValueError("points: expected reciprocal ranks, in each row a permutation of 1, 1/2, ..., "
-                             f"1/{len(self._values)} in float32, found {points[wrong.any(axis=1)][0]}")
+            raise ValueError("points: expected reciprocal ranks (a KDTree takes any), in each row a permutation "
+                             f"of 1, 1/2, ..., 1/{len(self._values)} in float32, found {points[wrong.any(axis=1)][0]}")
         return points
 
 

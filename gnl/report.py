@@ -65,7 +65,8 @@ def sections(results, costs, settings):
     yield (f"{len(results)} cells, {settings['episodes']} training episodes and {settings['tests']} tests each; "
            f"{n_tests} test episodes of every method. All numbers are percent or percentage points of right answers "
            "(place: x, y and bearing) after the fifth look. Intervals are 95 %, from a bootstrap of whole cells"
-           + (": of so few cells they say nothing." if len(results) < FEW_CELLS else "."))
+           + (": of so few cells they say nothing." if len(results) < FEW_CELLS else
+              "; they hold for these homes, this net and these classifiers, which cells share."))
     yield "## Means\n\n" + means(results, methods)
     yield "## Differences in pairs\n\n" + differences(results, methods)
     yield ("![Ours - MV by gap](gaps.png)\n\n"
@@ -134,7 +135,7 @@ def differences(results, methods):
         every = [np.concatenate([right(result)[name] for result in results]) for name in (a, b)]
         rows.append([f"{a} - {b}", interval(sum(d.values(), [])), f"{mcnemar(*every):.1g}",
                      *(interval(of_world) for of_world in d.values())])
-    return ("McNemar's p takes the episodes of a cell as independent, and is too small.\n\n"
+    return ("McNemar's p takes the episodes of a cell as independent, and may be too small.\n\n"
             + markdown(["", "points", "McNemar p", *(f"home {world}" for world in worlds)], rows))
 
 

@@ -50,6 +50,8 @@ class Robot:
         Each robot moves exactly as asked or until it touches; odometry errs by `motion.std_m` and `std_rad`.
         """
         poses, actions, m = np.array(poses, float), np.asarray(actions), self.motion
+        if actions.shape != (len(poses),) or not np.isin(actions, range(N_ACTIONS)).all():
+            raise ValueError(f"actions: expected {len(poses)} of 0..{N_ACTIONS - 1}, found {actions}")
         turn = np.choose(actions, [m.turn_rad, -m.turn_rad, 0.0])
         forward = np.where(actions == FORWARD, m.forward_m, 0.0)
         bumped = np.zeros(len(poses), bool)

@@ -28,7 +28,11 @@ N_WORDS = N_CLASSES * N_SIZES * GRID * GRID
 
 @dataclass(frozen=True)
 class SceneGraphs:
-    """The graphs of B views, one behind the other; a batch of one is a graph."""
+    """The graphs of B views, one behind the other; a batch of one is a graph.
+
+    By hand, three nodes in a row: SceneGraphs(words, boxes, np.array([[0, 1], [1, 2]]), np.array([0, 3]),
+    np.array([0, 2])); a GCN does not look at boxes.
+    """
 
     words: np.ndarray  # (N,) int
     boxes: np.ndarray  # (N, 4) px, half-open (x0, y0, x1, y1)
@@ -40,12 +44,12 @@ class SceneGraphs:
         return len(self.starts) - 1
 
     def __getitem__(self, index):
-        """Graph `index` alone."""
-        return self.pick([range(len(self))[index]])
+        """Graph `index` alone, or those of a slice."""
+        return self.pick(np.atleast_1d(np.arange(len(self))[index]))
 
     def pick(self, chosen):
-        """The graphs `chosen` (n,), in that order, repeats allowed."""
-        chosen = np.asarray(chosen, int)
+        """The graphs `chosen`, in that order: numbers (n,), repeats allowed, or a mask (B,)."""
+        chosen = np.arange(len(self))[chosen]
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
         edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
         shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))

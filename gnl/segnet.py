@@ -1,7 +1,7 @@
 """The segmentation net: from colours to labels (section IV-A: ResNet with a pyramid pooling module, in miniature).
 
-The paper's net sees 512 x 512 pixels and predicts at stride 8; ours sees the view at stride 8 and predicts each of
-its 64 x 64 pixels.
+The paper's net sees 512 x 512 pixels and predicts, as such nets do, at stride 8; ours sees the view at stride 8 and
+predicts each of its 64 x 64 pixels.
 
     stem    64 x 64 pixels as 32 x 32 quads of 2 x 2, each 12 colours and a height -> 16    linear, ReLU
     down    each square of 2 x 2 quads, 4 x 16 -> 16: 16 x 16 x 16    linear, ReLU
@@ -35,7 +35,7 @@ from .nn import (
     upsample_forward,
 )
 
-SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which the paper's predicts
+SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which nets like the paper's predict
 QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, read like a page
 WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid parts the cells of the one before
 
@@ -71,7 +71,9 @@ def forward(params, rgb, learning=True):
     rgb (B, 64, 64, 3) uint8 -> (10 classes, 4 pixels of a quad, B, 16, 16, 4 quads of a square)
     learning : if not, no cache is kept, which would cost room near the processor
     """
-    cache = {}
+    cache, (H, W) = {}, rgb.shape[1:3]
+    if H % (part := 4 * max(GRIDS)) or W % part:  # squares of 4 pixels, and cells of squares
+        raise ValueError(f"views: expected a height and a width that {part} parts, found {H} x {W}")
 
     def keep(name, out_and_cache):
         out, of_layer = out_and_cache

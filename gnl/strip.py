@@ -55,10 +55,16 @@ class Strip:
         return tuple(a.reshape(self.n_views, self.n_columns, -1) for a in (near, far, boxes))
 
 
+def rim():
+    """Slope of a ray at the left or upper rim of a view: tan(fov / 2)."""
+    if not 0 < FIELD_OF_VIEW_RAD < np.pi:
+        raise ValueError(f"field of view: expected more than 0 and less than pi, found {FIELD_OF_VIEW_RAD}")
+    return np.tan(FIELD_OF_VIEW_RAD / 2)
+
+
 def slopes(n_columns):
     """Slope s = left / ahead of each column's ray, column 0 the leftmost: (C,)."""
-    half = np.tan(FIELD_OF_VIEW_RAD / 2)
-    return half * (1 - (2 * np.arange(n_columns) + 1) / n_columns)
+    return rim() * (1 - (2 * np.arange(n_columns) + 1) / n_columns)
 
 
 def cast(world, poses, n_columns=512):
@@ -139,7 +145,7 @@ def _columns_of_faces(axes, near, far, n_columns):
     along_1 = np.array([np.where(outside[0], far[1], near[1]), near[1], near[1]])
     x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
     front = x > IN_FRONT_M
-    column = np.ceil((1 - y / np.where(front, x, 1) / np.tan(FIELD_OF_VIEW_RAD / 2)) * C / 2 - 0.5)
+    column = np.ceil((1 - y / np.where(front, x, 1) / rim()) * C / 2 - 0.5)
     # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
     first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
     behind = np.array([first, np.where(front[0], C - first, first), C - first])

@@ -167,6 +167,21 @@ def test_our_own_indices_read_as_those_of_ade20k_are_hinted_at(tmp_path, capsys)
     assert "without --ade20k" in capsys.readouterr().out.splitlines()[1]
 
 
+@pytest.mark.parametrize("mode", ["RGB", "P"])
+def test_a_picture_all_in_our_colours_is_read_by_them(mode, tmp_path, capsys):
+    """Whatever order a drawing program has given its palette."""
+    picture = Image.fromarray(PALETTE[LABELS])
+    if mode == "P":
+        picture = picture.quantize(8)
+        assert (np.array(picture) != LABELS).any()
+    picture.save(tmp_path / "labels.png")
+    assert run("graph", tmp_path / "labels.png") == 0
+    by_colour = capsys.readouterr().out
+    write(tmp_path / "labels.png")
+    assert run("graph", tmp_path / "labels.png") == 0
+    assert by_colour == capsys.readouterr().out
+
+
 def missing(path):
     return ["found nothing"]
 

@@ -96,6 +96,13 @@ def test_mcnemars_p_by_hand():
     assert mcnemar(a, b) == mcnemar(b, a) == pytest.approx(14 / 64)
 
 
+@pytest.mark.parametrize(("a", "b"), [([1, 0], [1]), ([0.3, 1], [0, 1]), ([[1, 0]], [[0, 1]])],
+                         ids=["lengths", "shares", "tables"])
+def test_mcnemars_p_is_of_right_and_wrong_alone(a, b):
+    with pytest.raises(ValueError, match=r"pairs: expected two equal lists of right \(1\) and wrong \(0\), found "):
+        mcnemar(a, b)
+
+
 def test_mcnemars_p_tends_to_the_chi_square_of_the_textbook():
     rng = np.random.default_rng(0)
     a, b = rng.random(20_000) < 0.5, rng.random(20_000) < 0.51

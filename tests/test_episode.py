@@ -217,6 +217,13 @@ def test_whoever_watches_sees_every_look(score):
             np.testing.assert_array_equal(what["seen"], seen[step - 1][1]["states"])
 
 
+@pytest.mark.parametrize("many", [run_all, train_nnql])
+def test_no_starts_are_refused(many):
+    rest = [planners.chance] if many is run_all else []
+    with pytest.raises(ValueError, match="starts: expected at least one, found none"):
+        many(Sense(knows), Glide(), GRID, *rest, starts(0), 0)
+
+
 def test_the_rules_of_an_episode_are_those_that_are_given():
     def opposite(scores):
         return np.roll(probability(scores), K // 2, 1)

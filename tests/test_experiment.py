@@ -3,6 +3,7 @@
 import itertools
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -60,6 +61,12 @@ def lived(parts):
 
 def test_a_cell_is_a_function_of_its_arguments(parts, lived):
     assert to_bytes(live(CELL, parts)[0]) == to_bytes(lived[0])
+
+
+def test_a_classifier_may_be_anything_with_scores(parts, lived):
+    gcn = parts[0].gcn
+    of_another = live(CELL, (replace(parts[0], gcn=SimpleNamespace(scores=gcn.scores)), parts[1]))[0]
+    assert {**of_another, "made from": 0} == {**lived[0], "made from": 0}
 
 
 def test_another_seed_is_another_cell(parts, lived):

@@ -142,7 +142,7 @@ def test_a_plan_that_never_was_a_file_is_checked_too():
     (["objects", 0, "z0"], ...), (["objects", 0, "color"], ...), (["objects", 0, "height"], 0),
     (["objects", 0, "z0"], -1), (["objects", 0, "class"], "piano"), (["wall_height"], 2), (["rooms", 0, "type"], ...),
     (["objects", 0, "polygon"], [[1, 1], [2, 1], [3, 1]]), (["objects", 0, "polygon"], [[1, 1], [1, 1], [1, 1]]),
-    (["objects", 0, "polygon", 0], [50, 50]),
+    (["objects", 0, "polygon", 0], [50, 50]), (["walls", 0], (0, 0, 6, 0)), (["rooms", 0, "polygon", 0], (0, 0)),
 ])
 def test_what_may_be_left_out_or_is_merely_odd_makes_a_home(keys, value):
     world = World(with_value(GOOD, keys, value))

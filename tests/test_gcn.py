@@ -214,5 +214,15 @@ def test_training_without_one_known_place_for_each_graph_is_refused(places):
 
 def test_words_that_the_network_does_not_know_are_refused():
     few = gcn.GCN(K, np.random.default_rng(0), n_words=3)
-    with pytest.raises(ValueError, match=r"words: expected 0\.\.2, found \d+"):
-        few.scores(graphs_of(random_parts(0)))
+    for words in ([0, 3], [-1, 2]):
+        graphs = graphs_of([(words, [(0, 1)])])
+        for use in (few.scores, lambda graphs: gcn.train(few, graphs, [0], np.random.default_rng(0))):
+            with pytest.raises(ValueError, match=rf"words: expected 0\.\.2, found {words[0]}\.\.{words[1]}"):
+                use(graphs)
+
+
+@pytest.mark.parametrize("edges", [[(0, 1), (1, 0)], [(1, 1)], [(1, 2)], [(0, 1), (0, 1)]],
+                         ids=["both ways", "to itself", "to another graph", "twice"])
+def test_training_on_edges_that_are_no_pairs_of_one_graph_is_refused(edges):
+    with pytest.raises(ValueError, match="edges: expected pairs of nodes i < j of one graph, each once, found others"):
+        gcn.train(net(), graphs_of([([0, 1], edges), ([2], [])]), [0, 1], np.random.default_rng(0))

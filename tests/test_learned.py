@@ -193,6 +193,8 @@ def test_quick_senses_look_by_true_labels_and_know_their_home_in_64_bits(parts):
 
     assert right(senses, [0, 1]) > 0.5 > right(others, [0, 1])  # those that it learned from
     assert right(senses, 0) < 0.5  # what one draws with the same seed is new to it
+    fine = PlaceGrid(world, 1.0, 8)
+    assert learned.quick_senses(world, 30, grid=fine).gcn.n_places == fine.n_places != senses.gcn.n_places
 
 
 def test_a_store_of_another_seed_learns_from_other_starts(parts, tmp_path, monkeypatch):

@@ -80,11 +80,11 @@ def test_each_of_many_robots_moves_by_its_own_odometry():
 
 
 @pytest.mark.parametrize("likelihood", [np.ones((1, 3)), np.ones(K), np.ones((2, K)), np.full((1, K), np.nan),
-                                        np.eye(K)[:1] - 0.1])
+                                        np.eye(K)[:1] - 0.1, np.full((1, K), np.inf)])
 def test_a_likelihood_that_cannot_be_is_refused_and_changes_nothing(likelihood):
     belief = new_filter()
     before = state(belief)
-    with pytest.raises(ValueError, match=f"likelihood: expected 1 x {K} numbers from 0 on, found "):
+    with pytest.raises(ValueError, match=f"likelihood: expected 1 x {K} finite numbers from 0 on, found "):
         belief.weigh(likelihood)
     for name, value in before.items():
         np.testing.assert_array_equal(getattr(belief, name), value)
@@ -204,6 +204,17 @@ def test_pooling_is_that_of_the_plain_loop(pooling):
     for b in range(3):
         plain = naive_learning.belief(belief.place[b], belief.weight[b], K, pooling)
         np.testing.assert_allclose(pooled[b], plain, rtol=1e-6)
+
+
+def test_a_belief_about_what_comes_next_is_pooled_after_weighing_by_ones():
+    belief = new_filter()
+    before = belief.belief(K)
+    belief.predict(np.array([[0.0, np.pi]]))
+    np.testing.assert_array_equal(belief.belief(K), before)
+    belief.weigh(np.ones((1, K)))
+    places = belief.grid.place_of(np.stack([belief.x, belief.y, belief.theta], -1)[0])
+    np.testing.assert_allclose(belief.belief(K)[0], np.bincount(places, belief.weight[0], K), atol=1e-6)
+    assert abs(belief.belief(K) - before).sum() > 1
 
 
 def test_a_pooling_that_is_none_is_refused():

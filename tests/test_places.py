@@ -84,6 +84,13 @@ def test_angles_are_wrapped_to_the_half_open_circle():
     np.testing.assert_allclose(np.exp(1j * wrapped), np.exp(1j * angles), atol=1e-12)
 
 
+@pytest.mark.parametrize("cells", [(0, 12), (-2, 12), (np.nan, 12), (2, 0), (2, 7.5)], ids=str)
+def test_cells_that_cannot_be_are_refused(cells):
+    with pytest.raises(ValueError, match="places: expected cells of more than 0 m and a whole number of bearings, "
+                                         f"found {cells[0]} and {cells[1]}"):
+        PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)), *cells)
+
+
 @pytest.mark.parametrize(("poses", "words"), [
     (np.zeros(4), r"poses: expected shape \(\.\.\., 3\), found \(4,\)"),
     (np.array([[1, 2, np.nan]]), "poses: expected finite numbers, found nan"),

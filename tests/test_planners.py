@@ -74,6 +74,11 @@ def test_exploring_is_by_chance_in_a_share_epsilon(epsilon):
     assert shares(plan(0, STATES, rng())) == close(epsilon / 3, 1 - epsilon * 2 / 3, epsilon / 3)
 
 
+def test_exploring_tries_as_many_actions_as_have_a_value():
+    actions = planners.explore(Values(0, 1, 0, 0, 0), np.ones(N))(0, STATES, rng())
+    np.testing.assert_allclose(np.bincount(actions) / N, 1 / 5, atol=0.02)
+
+
 def test_each_episode_explores_by_its_own_epsilon():
     actions = planners.explore(Values(0, 1, 0), np.arange(N) % 2)(0, STATES, rng())
     assert (actions[::2] == 1).all()

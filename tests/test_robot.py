@@ -142,6 +142,12 @@ def test_noise_is_drawn_alike_whatever_the_robots_do(two_rooms):
     assert states[0] == states[1] == states[2]
 
 
+@pytest.mark.parametrize("actions", [0, [0], [0, 3], [0, -1], [0.5, 1], [[0, 1]]], ids=str)
+def test_actions_that_are_none_are_refused(home, actions):
+    with pytest.raises(ValueError, match=rf"actions: expected 2 of 0\.\.{N_ACTIONS - 1}, found "):
+        Robot(home).step(home.free_poses(2, rng()), actions, rng())
+
+
 def test_many_robots_move_as_each_would_alone(home):
     robot, start = Robot(home, SURE), home.free_poses(30, rng())
     actions = np.arange(30) % N_ACTIONS

@@ -255,6 +255,16 @@ def test_picked_graphs_are_those_of_the_picked_views(chosen):
     assert equal(scene_graph(views).pick(chosen), scene_graph(views[np.array(chosen, int)]))
 
 
+def test_graphs_are_chosen_by_masks_and_slices_as_arrays_are():
+    views = batch_of_views()
+    graphs, mask = scene_graph(views), np.arange(len(views)) % 2 == 0
+    assert equal(graphs.pick(mask), scene_graph(views[mask]))
+    assert equal(graphs.pick([-1, 0]), scene_graph(views[[-1, 0]]))
+    assert equal(graphs[2:5], scene_graph(views[2:5]))
+    with pytest.raises(IndexError):
+        graphs.pick(mask[:-1])
+
+
 def test_labels_do_not_depend_on_their_type_or_layout():
     labels = batch_of_views()[0, :60, :44]
     assert len(scene_graph(labels).words) > 1

@@ -151,6 +151,13 @@ def test_accuracy_of_a_case_worked_by_hand():
     assert segnet.accuracy(9 - true, true) == (0, 0)
 
 
+@pytest.mark.parametrize("size", [(36, 64), (64, 8)])
+def test_views_that_the_pyramid_cannot_part_are_refused(size):
+    params, (H, W) = segnet.new_params(np.random.default_rng(0)), size
+    with pytest.raises(ValueError, match=f"views: expected a height and a width that 16 parts, found {H} x {W}"):
+        segnet.predict(params, np.zeros((1, H, W, 3), np.uint8))
+
+
 def test_a_saved_net_is_read_back_as_it_was(tmp_path):
     params = segnet.new_params(np.random.default_rng(0))
     segnet.save(params, tmp_path / "net.npz", {"seed": 0})

@@ -6,6 +6,7 @@ import pymunk
 import pytest
 from conftest import room, strewn_plan, thing
 
+from gnl import strip
 from gnl.classes import BED, DOOR, OTHER, SOFA, TABLE, TV, WALL
 from gnl.free_space import box_distance
 from gnl.strip import FACES, NEAREST_M, cast, slopes
@@ -241,3 +242,10 @@ def test_many_views_are_cast_as_each_would_alone(home):
             depth = alone.shape[-1]
             np.testing.assert_array_equal(whole[v, :, :depth], alone[0])
             assert (whole[v, :, depth:] == (np.inf if whole.dtype == float else -1)).all()
+
+
+@pytest.mark.parametrize("angle", [np.pi, 3.5, 0, np.nan])
+def test_a_view_of_half_a_circle_or_more_is_refused(monkeypatch, angle):
+    monkeypatch.setattr(strip, "FIELD_OF_VIEW_RAD", angle)
+    with pytest.raises(ValueError, match=f"field of view: expected more than 0 and less than pi, found {angle}"):
+        slopes(8)
