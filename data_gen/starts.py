@@ -17,8 +17,10 @@ from gnl.experiment import Cell
 from gnl.files import load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
+from gnl.learned import digest
 from gnl.places import wrap_angle
 from gnl.terminal import Stage, processes
+from gnl.world import World
 
 from .rooms import make_home
 
@@ -52,6 +54,8 @@ def run(args):
         return
     stage, homes = Stage("starts"), {world: make_home(world) for world in {cell.world for cell in todo}}
     for world, home in homes.items():
+        if plans[world].exists() and digest(World.load(plans[world]).plan) != digest(home.plan):
+            raise ValueError(f"{plans[world]}: expected {home.name} or nothing, found another home")
         home.save(plans[world])
     with processes(args.jobs) as pool:
         drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
@@ -67,7 +71,8 @@ def cell_of(words):
     """The Cell of `--cell WORLD M DEG SEED`."""
     try:
         cell = Cell(*(kind(word) for kind, word in zip((int, float, int, int), words, strict=True)))
-        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m < LARGEST_HOME_M):
+        in_its_name = float(f"{cell.t_xy_m:g}")
+        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m == in_its_name < LARGEST_HOME_M):
             raise ValueError
     except ValueError:
         raise ValueError(f"--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, found {' '.join(words)}") from None

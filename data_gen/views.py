@@ -34,8 +34,12 @@ def add_arguments(parser):
 def run(args):
     """Views of many homes and their true labels, unless the file has just these already."""
     made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise}
-    if Path(args.out).exists() and load_arrays(args.out)[1] == made_by:
-        return
+    if Path(args.out).exists():
+        there = load_arrays(args.out)[1]
+        if there == made_by:
+            return
+        if not isinstance(there, dict) or there.keys() != made_by.keys():
+            raise ValueError(f"{args.out}: expected views or nothing, found a file made by {there}")
     stage = Stage("homes")
     rgb, labels = training_views(args.homes, args.views, args.seed, args.noise, stage)
     save_arrays(args.out, made_by, rgb=rgb, labels=labels)

@@ -18,13 +18,13 @@ from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
 from .experiment import Cell, costs, costs_of, now, to_bytes
-from .files import load_arrays, load_json, write_whole
+from .files import load_json, write_whole
 from .outcomes import answers, outcomes
 from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, executor, finished, path_of, prepare, run_jobs, starts_of
+from .table import Settings, agree, executor, finished, load_starts, path_of, prepare, run_jobs
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
 CELLS = [Cell(world, 0.2, 10, 0) for world in WORLDS]  # narrow gaps leave room for many tests
@@ -48,7 +48,7 @@ def run(args):
             raise ValueError(f"--points: expected some of {', '.join(sorted(points))}, found {point!r}")
     chosen = [choice for choice in CHOICES if not args.points or choice.point in args.points]
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
-    page = args.page and Path(args.page).read_text(encoding="utf-8")
+    page = args.page and _read_page(args.page)
     out = Path(args.out)
     agree(out, asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
@@ -57,7 +57,7 @@ def run(args):
     if todo:
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
-            starts = {cell: load_arrays(starts_of(out, cell))[0] for cell in CELLS}
+            starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
             run_jobs(out, [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS)
                            for name, (choice, cell) in todo.items()], SETTINGS.episodes, pool, "ablate")
     if len(todo) < len(jobs):
@@ -66,6 +66,14 @@ def run(args):
     print(markdown(["open", "choice", "beside", "MV", "Ours"], measured))
     if page:
         write_whole(args.page, filled(page, measured).encode())
+
+
+def _read_page(path):
+    """The text of a page; ValueError if it holds none."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: expected a page of text, found {error}") from None
 
 
 def load(path):

@@ -52,8 +52,9 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
     """
     poses, rgb, runs = _check(poses, size), [], []
     check_noise(noise)
-    if wanted is None:
-        wanted = np.ones(len(poses), bool)
+    wanted = np.ones(len(poses), bool) if wanted is None else np.asarray(wanted)
+    if wanted.shape != (len(poses),) or wanted.dtype != bool:
+        raise ValueError(f"wanted: expected {len(poses)} of bool, found {wanted.dtype} {wanted.shape}")
     for part in _chunks(len(poses), size):
         seen = poses[part][wanted[part]]
         surfaces = look(world, seen, size)

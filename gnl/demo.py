@@ -82,8 +82,8 @@ def learn(args, scale, helper, world, grid, robot):
 
     stage = Stage("net")
     views, views_made_by = learned.load_views(args.views)
-    n_known = views_made_by.get("homes", 0)
-    if world.name in [f"home-{seed}" for seed in range(n_known)]:
+    n_known, (word, _, seed) = views_made_by.get("homes", 0), world.name.partition("-")
+    if word == "home" and seed.isdecimal() and int(seed) < n_known:
         raise ValueError(f"{args.plan}: expected a home that the net does not learn from (HOUSE from {n_known} on), "
                          f"found {world.name}")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
@@ -143,6 +143,10 @@ def check(args):
         if getattr(args, name) < least:
             raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
     check_noise(args.noise, "--noise")
+    for name in ("out", "pictures"):
+        folder = Path(getattr(args, name) or ".")
+        if folder.exists() and not folder.is_dir():
+            raise ValueError(f"--{name}: expected a folder, found the file {folder}")
 
 
 def rng(args, stream):

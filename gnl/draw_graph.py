@@ -25,6 +25,9 @@ def add_arguments(parser):
 def run(args):
     """Print the graph, a node a line, and draw it over the labels."""
     labels = load(args.labels, args.ade20k)
+    out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
+    if out.exists() and out.samefile(args.labels):
+        raise ValueError(f"--out: expected another file than the labels, found {out}")
     graph = scene_graph(labels)
     print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels, "
           f"{count(len(graph.words), 'node')}, {count(len(graph.edges), 'edge')}")
@@ -36,7 +39,6 @@ def run(args):
         neighbours = sorted({*graph.edges[graph.edges[:, 0] == i, 1], *graph.edges[graph.edges[:, 1] == i, 0]})
         print(f"{i:3}  {CLASSES[label]}, {draw.SIZES[size]}, {draw.LOCATIONS[location]}  word {graph.words[i]}  "
               f"box {' '.join(f'{v:.0f}' for v in box)}  next to {' '.join(map(str, neighbours)) or 'none'}")
-    out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
     rows, columns = (np.arange(VIEW_PX) * n // VIEW_PX for n in labels.shape)
     draw.save_png(draw.graph(graph, draw.labels(labels[rows[:, None], columns], VIEW_PX)), out)
     print(f"drawn in {out}")
@@ -52,10 +54,13 @@ def load(path, ade20k=False):
     try:
         with Image.open(path) as image:
             image.load()
+            n_frames = getattr(image, "n_frames", 1)
     except FileNotFoundError:
         raise ValueError(f"{path}: expected a label image, found nothing") from None
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:  # what Pillow says of a bad file
         raise ValueError(f"{path}: expected an image, found something else ({error})") from None
+    if n_frames > 1:
+        raise ValueError(f"{path}: expected one image, found {n_frames}")
     if image.format == "JPEG":
         raise ValueError(f"{path}: expected an image that keeps indices as they are, such as PNG, found JPEG")
     if image.mode in ("RGB", "P") and not ade20k:

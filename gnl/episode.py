@@ -162,7 +162,9 @@ def race(senses, robot, grid, starts, seed, rules=None):
     race: after each round the best third goes on, from three times as many new starts, the same for all. Those that
     repeat one action stay to the end: few others beat them, and options.py asks what they are worth.
     """
-    length = (rules or Rules()).length
+    length, starts = (rules or Rules()).length, np.asarray(starts)
+    if length < 1 or not len(starts):
+        raise ValueError(f"race: expected at least one action and one start, found {length} and {len(starts)}")
     sequences, first = planners.sequences(length), 0
     total, count, running = np.zeros(len(sequences)), np.zeros(len(sequences)), np.arange(len(sequences))
     repeats = np.flatnonzero((sequences == sequences[:, :1]).all(1))

@@ -25,7 +25,7 @@ import numpy as np
 from . import episode, learned, planners
 from .files import load_json
 from .options import Experience, Options
-from .outcomes import curve, from_training, outcomes, right
+from .outcomes import arrays, curve, from_training, outcomes, right
 from .places import PlaceGrid
 from .robot import Robot
 from .senses import SharedSenses
@@ -116,9 +116,15 @@ def costs_of(path):
 def load_cell(path):
     """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
     def look(result):
-        curve([result]), right(result), from_training(result)
+        curve([result]), right(result), right(result, "location")
+        by_heart = from_training(result)
+        by_heart["MV"], by_heart["Scan"], by_heart["Ours"]
+        sizes = {np.shape(arrays(looks)) for outcome in (*result["tests"].values(), *result["checkpoints"])
+                 for looks in (outcome["place"], outcome["location"])}
+        if len(sizes) > 1:
+            raise ValueError(f"tests of {sizes} episodes and looks")
         name = Cell(**result["cell"]).name
-        if name != path.stem:
+        if name != path.stem or not isinstance(result["cell"]["world"], int):
             raise ValueError(f"those of {name}")
         if not len(result["checkpoints"]) == len(result["validation"]) == N_CHECKPOINTS:
             raise ValueError(f"{len(result['checkpoints'])} checkpoints, {len(result['validation'])} validated")
@@ -128,7 +134,7 @@ def load_cell(path):
                    *costs["of stages"].values()]
         if min(numbers) < 0 or not costs["views"]:
             raise ValueError("no views, or less than nothing")
-        costs["of stages"]["graph"], costs["machine"], dict(costs["versions"])
+        costs["of stages"]["graph"], costs["machine"].split(), costs["versions"].items()
 
     return (load_json(path, "the outcomes of a cell", look),
             load_json(costs_of(path), "the costs of a cell", look_at_costs))

@@ -30,7 +30,7 @@ def write_whole(path, data):
         os.replace(temporary, path)
     except BaseException as error:
         os.unlink(temporary)
-        if isinstance(error, OSError) and error.errno and not error.filename:  # a full disk names no file
+        if isinstance(error, OSError) and error.errno:  # a full disk names no file, a folder in the way another one
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
 

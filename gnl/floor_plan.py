@@ -8,8 +8,8 @@
      "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
 
 Metres; `height` is an object's own extent above `z0`; walls end where a door begins. There must be `walls`; of a door
-its segment, of a room its polygon, of an object class, polygon and height. Keys that are not listed are left as they
-are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
+its segment, of a room its polygon (3 to 100 corners), of an object class, polygon and height. Keys that are not listed
+are left as they are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
 """
 
 import json
@@ -19,7 +19,8 @@ from .files import write_whole
 
 WALL_HEIGHT_M = 2.5
 DOOR_HEIGHT_M = 2.0
-LARGEST_HOME_M = 200.0
+LARGEST_HOME_M, FARTHEST_M = 200.0, 10_000.0  # farther from the origin particles, in 32 bits, would move by millimetres
+MOST_CORNERS = 100  # of a polygon; to cover a jagged outline takes time as their number to the third
 HUGE = 1e9
 
 
@@ -27,12 +28,20 @@ def load(path):
     """Read and check the floor plan at `path`; returns the plan, a dict as in the head of this module."""
     try:
         with open(path, encoding="utf-8") as file:
-            plan = json.load(file)
+            plan = json.load(file, object_pairs_hook=_once)
     except OSError as error:
         raise ValueError(f"{path}: expected a floor plan, found no readable file ({error.strerror})") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: expected JSON, found something else ({error})") from None
     return check(plan, path)
+
+
+def _once(pairs):
+    """A dict of pairs whose keys are all different, or ValueError: of two equal ones JSON would keep the last."""
+    names = [name for name, _ in pairs]
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise ValueError(f"the key {min(twice)!r} twice in one object")
+    return dict(pairs)
 
 
 def save(plan, path):
@@ -67,8 +76,8 @@ def check(plan, source="floor plan"):
             fail(place, "two different end points", value)
 
     def polygon(value, place):
-        if not isinstance(value, (list, tuple)) or len(value) < 3:
-            fail(place, "a polygon of at least 3 points", value)
+        if not isinstance(value, (list, tuple)) or not 3 <= len(value) <= MOST_CORNERS:
+            fail(place, f"a polygon of 3 to {MOST_CORNERS} points", value)
         for point in value:
             numbers(point, 2, place)
 
@@ -123,4 +132,7 @@ def check(plan, source="floor plan"):
         extent = max(max(line) - min(line) for line in zip(*points, strict=True))
         if extent > LARGEST_HOME_M:
             fail(key, f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
+    farthest = max(abs(number) for end in ends for number in end)
+    if farthest > FARTHEST_M:
+        fail("walls", f"a home within {FARTHEST_M:g} m of the origin", farthest)
     return plan

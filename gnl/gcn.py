@@ -160,10 +160,13 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
     once = len(np.unique(i * len(graph) + j)) == len(i)
     if not once or not (i < j).all() or (graph[i] != graph[j]).any():
         raise ValueError("edges: expected pairs of nodes i < j of one graph, each once, found others")
-    if places.shape != (len(graphs),) or not len(places):
-        raise ValueError(f"places: expected one for each of the {len(graphs)} graphs, found shape {places.shape}")
+    if places.shape != (len(graphs),) or not len(places) or not np.issubdtype(places.dtype, np.integer):
+        raise ValueError(f"places: expected an integer for each of the {len(graphs)} graphs, "
+                         f"found {places.dtype} of shape {places.shape}")
     if not 0 <= places.min() <= places.max() < gcn.n_places:
         raise ValueError(f"places: expected 0..{gcn.n_places - 1}, found {places.min()}..{places.max()}")
+    if batch < 1 or epochs < 0 or not 0 <= rate < np.inf:
+        raise ValueError(f"batch, epochs, rate: expected at least 1, 0 and 0, found {batch}, {epochs} and {rate}")
     adam = Adam(gcn.params, rate)
     for epoch in range(epochs):
         order, losses = rng.permutation(len(places)), []

@@ -42,13 +42,18 @@ def path_of(folder, name, settings):
 def kept(folder, name, settings, load, learn):
     """load(path) of the part `name` made with `settings`, or learn(path), which must write it."""
     path = path_of(folder, name, settings)
-    return load(path)[0] if path.exists() else learn(path)
+    if not path.exists():
+        return learn(path)
+    part, made_by = load(path)
+    if made_by != json.loads(json.dumps(settings)):
+        raise ValueError(f"{path}: expected what was made by {settings}, found what was made by {made_by}")
+    return part
 
 
 def load_views(path):
     """Training views (rgb, labels) of a file of `python -m data_gen views`, and what made them."""
     arrays, made_by = load_arrays(path)
-    if not isinstance(made_by, dict):
+    if not isinstance(made_by, dict) or not isinstance(made_by.get("homes", 0), int):
         raise ValueError(f"{path}: expected views of `python -m data_gen views`, found some made by {made_by}")
     rgb, labels = arrays.get("rgb", np.empty(0)), arrays.get("labels", np.empty(0))
     size = segnet.SIZE_PX
@@ -115,8 +120,8 @@ def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.
     rng = np.random.default_rng(seed)
     # CHOICE: from the whole home, places near the tests too; the paper trains one classifier "for each dataset".
     poses = senses.world.free_poses(n_views, rng)
-    half = n_views // 2 if helper else n_views
-    theirs = helper and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
+    half = n_views // 2 if helper and n_views > 1 else n_views
+    theirs = half < n_views and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
     graphs = senses.look_around(poses[:half], rng, stage and (lambda share: stage(0.5 * share, "looking around")))
     graphs = join([graphs, theirs.result()]) if theirs else graphs
     network = gcn.GCN(grid.n_places, rng, dtype=dtype)
@@ -162,10 +167,11 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
 
     def load(path):
         arrays, made_by = load_arrays(path)
-        if list(arrays) != ["sequence"] or not np.isin(arrays["sequence"], range(N_ACTIONS)).all():
+        sequence = arrays.get("sequence", np.empty(0))
+        if len(arrays) != 1 or sequence.shape != (episode.LENGTH,) or not np.isin(sequence, range(N_ACTIONS)).all():
             raise ValueError(f"{path}: expected a sequence of actions 0..{N_ACTIONS - 1}, "
                              f"found {', '.join(f'{name} {a}' for name, a in arrays.items())}")
-        return arrays["sequence"], made_by
+        return sequence, made_by
 
     return lambda: kept(folder, "scan", settings, load, learn)
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from .checkpoints import Checkpoints
 from .files import load_arrays, save_arrays
-from .kdtree import lengths
+from .kdtree import check_count, lengths
 from .rank_index import RankIndex
 
 K_NEIGHBOURS, ALPHA, GAMMA = 4, 0.1, 0.9
@@ -95,7 +95,7 @@ class NNQL:
     """
 
     def __init__(self, n_places, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
-        self.k, self.alpha, self.gamma = k, alpha, gamma
+        self.k, self.alpha, self.gamma = check_count("k", k, 1), alpha, gamma
         # CHOICE: neighbours of a pair are pairs of the same action; the paper's N(s, a) could hold others, too.
         self.index = [index(n_places) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
@@ -114,10 +114,12 @@ class NNQL:
         # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
         # several met is changed by one after the other.
         states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
-        rewards, done = np.asarray(rewards, float), np.asarray(done, bool)
-        if not (np.isin(actions, range(len(self.index))).all() and np.isfinite(rewards).all()):
-            raise ValueError(f"actions, rewards: expected 0..{len(self.index) - 1} and finite numbers, "
-                             f"found {actions}, {rewards}")
+        actions, rewards, done = np.asarray(actions), np.asarray(rewards, float), np.asarray(done, bool)
+        B = len(states)
+        if not (states.shape == next_states.shape and actions.shape == rewards.shape == done.shape == (B,)
+                and np.isin(actions, range(len(self.index))).all() and np.isfinite(rewards).all()):
+            raise ValueError(f"actions, rewards: expected 0..{len(self.index) - 1} and finite numbers, one for each of "
+                             f"{B} states, next states and ends, found {actions}, {rewards}")
         found = self._neighbours(states)
         if done.all():
             ahead, self._states = 0.0, None  # nobody will ask for what comes after
@@ -184,14 +186,18 @@ class NNQL:
             raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
         for a in range(n_actions):
             states, values = arrays[f"states{a}"], arrays[f"values{a}"]
-            if states.ndim != 2 or values.shape != (len(states),) or not np.isfinite(values).all():
+            finite = values.dtype == float and np.isfinite(values).all()
+            if states.ndim != 2 or values.shape != (len(states),) or not finite:
                 raise ValueError(f"{path}: expected states (n, K) and n finite values of action {a}, "
                                  f"found {states.shape} and {values.shape}")
         store = cls(arrays["states0"].shape[1], n_actions, **settings)
-        for a, index in enumerate(store.index):
-            index.add(arrays[f"states{a}"])
-        store.values = [arrays[f"values{a}"] for a in range(n_actions)]
-        store.log = Checkpoints.from_arrays(arrays, n_actions)
+        try:
+            for a, index in enumerate(store.index):
+                index.add(arrays[f"states{a}"])
+            store.values = [arrays[f"values{a}"] for a in range(n_actions)]
+            store.log = Checkpoints.from_arrays(arrays, n_actions)
+        except (ValueError, IndexError) as error:
+            raise ValueError(f"{path}: expected a store of state-action pairs, found another one ({error})") from None
         return store, made_by
 
 

@@ -22,6 +22,8 @@ def strings(right):
 
 def arrays(looks):
     """The other way round: T strings -> (n, T) bool."""
+    if set("".join(looks)) - {"0", "1"} or len(set(map(len, looks))) != 1:
+        raise ValueError("looks that are no strings of 0 and 1, all equally long")
     characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in looks]).T
     return characters == ord("1")
 

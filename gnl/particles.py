@@ -32,9 +32,13 @@ class ParticleFilter:
         likelihood : (B, K), of each place given the first view
         std        : of the motion noise, metres (forward and aside) and radians
         """
+        likelihood = np.asarray(likelihood)
+        if min(n_particles, n_start_places) < 1 or likelihood.ndim != 2:
+            raise ValueError(f"particles: expected at least one, in at least one place, and likelihoods (B, K), found "
+                             f"{n_particles}, {n_start_places} and {likelihood.shape}")
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
         self.grid, self.rng, self.std = grid, rng, std
-        best = np.argsort(-likelihood, axis=1, kind="stable")[:, :k]
+        best = np.argsort(-likelihood.astype(float), axis=1, kind="stable")[:, :k]
         # Particles of one place lie in one block: were places to alternate (0, 1, 2, 0, 1, 2, ..), systematic
         # resampling, which takes every n-th particle, could take all from one place.
         block = np.arange(M) * k // M
@@ -46,10 +50,13 @@ class ParticleFilter:
 
     def predict(self, odometry):
         """Move all particles as odometry says, (B, 2) forward [m] and turn [rad], and spread them by its noise."""
+        odometry = np.asarray(odometry, np.float32)
+        if odometry.shape != (len(self.x), 2) or not np.isfinite(odometry).all():
+            raise ValueError(f"odometry: expected {len(self.x)} x 2 finite numbers, found {odometry}")
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
         noise *= np.float32([[self.std[0]], [self.std[0]], [self.std[1]]])
         for some in self._groups():
-            forward, turn = np.asarray(odometry, np.float32)[some].T[..., None]
+            forward, turn = odometry[some].T[..., None]
             self.x[some] += forward * np.cos(self.theta[some]) + noise[0]
             self.y[some] += forward * np.sin(self.theta[some]) + noise[1]
             self.theta[some] += turn + noise[2]

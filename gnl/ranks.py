@@ -12,6 +12,8 @@ import numpy as np
 def ranks(scores):
     """Rank of each score, 1 the best; equal scores rank in the order of their places: (B, K) -> (B, K) int."""
     scores = np.asarray(scores)
+    if not np.issubdtype(scores.dtype, np.floating):
+        scores = scores.astype(float)  # the negative of an unsigned number is none
     if np.isnan(scores).any():
         raise ValueError(f"scores: expected numbers, found {np.isnan(scores).sum()} NaN")
     order = np.argsort(-scores, axis=-1, kind="stable")

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import draw, draw_charts
 from .compare import episodes_needed, in_points, mcnemar, over_cells
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, load_cell
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, load_cell
 from .files import load_json, write_whole
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
@@ -31,12 +31,13 @@ def run(args):
     """Write report.md and its pictures."""
     stage, folder = Stage("report"), Path(args.to or Path(args.out) / "report")
     results, costs, settings = load(args.out)
+    text = "\n\n".join(sections(results, costs, settings)) + "\n"
     pictures = {"gaps": draw_charts.heat_maps(by_gap(results, "Ours", "MV"), GAPS_M, GAPS_DEG),
                 "curves": draw_charts.curves({world: curve(of_world) for world, of_world in by_world(results).items()}),
                 "chosen": draw_charts.histogram(Counter(adapted(result) for result in results))}
     for name, picture in pictures.items():
         draw.save_png(picture, folder / f"{name}.png")
-    write_whole(folder / "report.md", "\n\n".join(sections(results, costs, settings)).encode() + b"\n")
+    write_whole(folder / "report.md", text.encode())
     stage.done(f"{len(results)} cells, {folder / 'report.md'}")
 
 
@@ -54,6 +55,11 @@ def load(out):
     settings = load_json(Path(out) / "settings.json", "the settings of a table")
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
+    for result, _ in cells:
+        if result.get("settings") != settings:
+            name = Cell(**result["cell"]).name
+            raise ValueError(f"{Path(out) / 'cells' / name}.json: expected results of the settings in settings.json, "
+                             f"found some of {result.get('settings')}")
     return *map(list, zip(*cells, strict=True)), settings
 
 

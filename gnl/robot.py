@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
-from .places import wrap_angle
+from .places import check_poses, wrap_angle
 from .world import ROBOT_RADIUS_M
 
 ACTIONS = ("left", "right", "forward")  # CHOICE: turns both ways; the paper says "rotating r or forward f motions"
@@ -49,7 +49,7 @@ class Robot:
 
         Each robot moves exactly as asked or until it touches; odometry errs by `motion.std_m` and `std_rad`.
         """
-        poses, actions, m = np.array(poses, float), np.asarray(actions), self.motion
+        poses, actions, m = check_poses(poses).copy(), np.asarray(actions), self.motion
         if actions.shape != (len(poses),) or not np.isin(actions, range(N_ACTIONS)).all():
             raise ValueError(f"actions: expected {len(poses)} of 0..{N_ACTIONS - 1}, found {actions}")
         turn = np.choose(actions, [m.turn_rad, -m.turn_rad, 0.0])

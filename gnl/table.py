@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from . import learned
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, run_cell, to_bytes
 from .files import load_arrays, load_json, write_whole
@@ -67,7 +69,7 @@ def run(args):
     write_whole(out / "settings.json", to_bytes(asdict(settings)))
     if todo:
         with executor(args.jobs, args.dask) as pool:
-            jobs = ((cell.name, run_cell, cell, senses, load_arrays(starts_of(out, cell))[0], asdict(settings))
+            jobs = ((cell.name, run_cell, cell, senses, load_starts(out, cell, settings), asdict(settings))
                     for world, senses in prepare(out, settings, todo, args.jobs, pool)
                     for cell in todo if cell.world == world)
             run_jobs(out, jobs, settings.episodes, pool, "table")
@@ -119,7 +121,7 @@ def prepare(out, settings, cells, jobs, pool):
     net = learned.segmentation_net(out / "learned", pictures, made_by, settings.net_epochs, seed=0, stage=stage)
     stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
     stage = Stage("gcn")
-    senses = {world: Senses(World.load(homes[world]), net, None, settings.noise) for world in worlds}
+    senses = {world: Senses(_load_home(homes[world], world), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
     made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
     for world, gcn in learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how):
@@ -146,7 +148,7 @@ def check(args):
 
 def world_of(name):
     """The seed of a home in which robots are localized."""
-    if not str(name).isdigit() or int(name) < WORLDS[0]:
+    if not str(name).isdecimal() or int(name) < WORLDS[0]:
         raise ValueError(f"--worlds: expected seeds of homes, {WORLDS[0]} or more, found {name!r}")
     return int(name)
 
@@ -204,6 +206,24 @@ def path_of(out, name):
 def starts_of(out, cell):
     """The file of a cell's start poses."""
     return Path(out) / "data" / f"starts-{cell.name}.npz"
+
+
+def load_starts(out, cell, settings):
+    """A cell's start poses; ValueError if they are not as many as the settings say."""
+    starts, _ = load_arrays(path := starts_of(out, cell))
+    sizes = {"training": settings.episodes, "tests": settings.tests, "validation": settings.validation}
+    found = {name: poses.shape for name, poses in starts.items()}
+    if found != {name: (n, 3) for name, n in sizes.items()} or not all(np.isfinite(p).all() for p in starts.values()):
+        raise ValueError(f"{path}: expected start poses {sizes}, found {found}, or some that are no numbers")
+    return starts
+
+
+def _load_home(path, seed):
+    """The procedural home of a seed; ValueError if it is another one."""
+    home = World.load(path)
+    if home.name != f"home-{seed}":
+        raise ValueError(f"{path}: expected home-{seed}, found {home.name}")
+    return home
 
 
 @contextmanager

@@ -87,12 +87,13 @@ class World:
 
     def is_free(self, xy, radius_m=ROBOT_RADIUS_M):
         """Whether a disc at each point is inside the home and touches nothing: (n, 2) -> (n,) bool."""
-        xy, b = np.asarray(xy, float).reshape(-1, 2), self.blocks
+        xy, b = _points(xy), self.blocks
         distance = box_distance(xy, self.centre[b], self.half[b], self.angle[b]).min(1, initial=np.inf)
         return self.free_space.inside(xy) & (distance > radius_m)
 
     def is_reachable(self, xy, radius_m=ROBOT_RADIUS_M):
         """Whether a disc at each point is free and in the largest region that it can roam: (n, 2) -> (n,) bool."""
+        xy = _points(xy)
         reachable = self.free_space.look_up(self.free_space.largest_room(radius_m), xy)
         reachable[reachable] = self.is_free(xy[reachable], radius_m)
         return reachable
@@ -146,6 +147,14 @@ class World:
         if height < self.wall_height and not folded:
             boxes.append(_panel(segment, WALL_THICKNESS_M, height, self.wall_height, WALL, wall_colour))
         return boxes
+
+
+def _points(xy):
+    """Points as floats (n, 2), or one (2,); ValueError if they are none."""
+    xy = np.asarray(xy, float)
+    if xy.ndim not in (1, 2) or xy.shape[-1] != 2:
+        raise ValueError(f"xy: expected shape (n, 2), found {xy.shape}")
+    return xy.reshape(-1, 2)
 
 
 def _panel(segment, thickness, z0, z1, label, colour):

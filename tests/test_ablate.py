@@ -196,7 +196,7 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
         assert [name for name, *_ in jobs] == [ablate.name_of(choice, cell) for choice, cell in asked]
         write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
-    for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_arrays", lambda _: [None]),
+    for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_starts", lambda *_: None),
                         ("executor", contextlib.nullcontext), ("run_jobs", run_jobs)):
         monkeypatch.setattr(ablate, name, value)
     for _ in range(2):  # the second one has nothing to do

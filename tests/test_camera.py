@@ -165,6 +165,13 @@ def test_true_labels_are_those_of_the_rendered_view(home, size):
     assert (rgb.shape, rgb.dtype) == ((3, size, size, 3), np.uint8)
 
 
+@pytest.mark.parametrize("wanted", [[1, 0], [True], [True] * 3, [[True, False]]], ids=str)
+def test_what_says_not_of_each_pose_whether_it_is_wanted_is_refused(two_rooms, wanted):
+    rng = np.random.default_rng(0)
+    with pytest.raises(ValueError, match="wanted: expected 2 of bool, found "):
+        render(two_rooms, two_rooms.free_poses(2, rng), rng, 64, wanted=wanted)
+
+
 def test_no_view_at_all_is_no_error(home):
     rgb, labels = render(home, np.empty((0, 3)), np.random.default_rng(0), 64)
     assert (rgb.shape, labels.shape) == ((0, 64, 64, 3), (0, 64, 64))

@@ -182,6 +182,14 @@ def test_a_picture_all_in_our_colours_is_read_by_them(mode, tmp_path, capsys):
     assert by_colour == capsys.readouterr().out
 
 
+def test_the_labels_are_never_drawn_over(tmp_path, capsys):
+    path = write(tmp_path / "labels.png")
+    before = path.read_bytes()
+    assert run("graph", path, "--out", tmp_path / ".." / tmp_path.name / "labels.png") == 2
+    assert "--out: expected another file than the labels, found " in capsys.readouterr().err
+    assert path.read_bytes() == before
+
+
 def missing(path):
     return ["found nothing"]
 
@@ -199,6 +207,12 @@ def folder(path):
 def rgb(path):
     Image.new("RGB", (8, 8)).save(path)
     return ["expected one class index a pixel", "RGB"]
+
+
+def moving(path):
+    frames = [Image.fromarray(LABELS), Image.fromarray(LABELS[::-1])]
+    frames[0].save(path, "GIF", save_all=True, append_images=frames[1:])
+    return ["expected one image, found 2"]
 
 
 def index_10(path):
@@ -233,7 +247,7 @@ def bomb(path):
     return ["expected an image"]
 
 
-FAULTS = [missing, a_song, folder, rgb, index_10, index_255, truncated, short_head, bomb]
+FAULTS = [missing, a_song, folder, rgb, moving, index_10, index_255, truncated, short_head, bomb]
 
 
 def assert_one_line(capsys, *words):

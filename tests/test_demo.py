@@ -303,6 +303,11 @@ def unlike_views(path):
     save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.zeros((7, 64, 64), np.uint8))
 
 
+def views_of_many_homes(path):
+    rgb = np.zeros((8, 64, 64, 3), np.uint8)
+    save_arrays(path, {"homes": "forty"}, rgb=rgb, labels=rgb[..., 0])
+
+
 def views_of_eleven_classes(path):
     save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.full((8, 64, 64), 10, np.uint8))
 
@@ -329,6 +334,13 @@ def test_an_option_that_cannot_be_is_named(tmp_path, capsys, option):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("option", ["--out", "--pictures"])
+def test_a_file_in_the_place_of_a_folder_is_named_before_anything_is_learned(tmp_path, capsys, option):
+    (tmp_path / "file").write_text("la la la")
+    assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "v", option, tmp_path / "file"],
+                    f"{option}: expected a folder, found the file {tmp_path / 'file'}")
+
+
 @pytest.mark.parametrize("make", [a_song, missing, folder], ids=lambda make: make.__name__)
 def test_a_plan_that_is_none_is_named(tmp_path, capsys, make):
     make(tmp_path / "plan")
@@ -346,7 +358,7 @@ def test_a_home_that_the_net_learns_from_is_refused(views, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views,
-                                  views_of_eleven_classes], ids=lambda make: make.__name__)
+                                  views_of_many_homes, views_of_eleven_classes], ids=lambda make: make.__name__)
 def test_views_that_are_none_are_named(tmp_path, capsys, make):
     make(tmp_path / "views")
     assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "views", "--out", tmp_path / "out"],

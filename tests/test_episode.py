@@ -217,6 +217,12 @@ def test_whoever_watches_sees_every_look(score):
             np.testing.assert_array_equal(what["seen"], seen[step - 1][1]["states"])
 
 
+def test_a_race_of_nothing_is_refused():
+    for n_starts, rules in ((0, Rules()), (5, Rules(length=0))):
+        with pytest.raises(ValueError, match="race: expected at least one action and one start, found "):
+            episode.race(Sense(knows), Glide(), GRID, starts(n_starts), 0, rules)
+
+
 @pytest.mark.parametrize("many", [run_all, train_nnql])
 def test_no_starts_are_refused(many):
     rest = [planners.chance] if many is run_all else []

@@ -52,6 +52,14 @@ def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_folder_in_the_way_is_told_by_its_name(tmp_path):
+    (tmp_path / "file").mkdir()
+    with pytest.raises(OSError) as refusal:
+        write_whole(tmp_path / "file", b"new")
+    assert str(refusal.value) == f"[Errno 21] Is a directory: '{tmp_path / 'file'}'"
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
 def test_a_failed_rename_leaves_all_as_it_was(tmp_path, monkeypatch):
     def refuse(*_):
         raise PermissionError

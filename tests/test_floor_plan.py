@@ -49,12 +49,13 @@ FAULTS = [
     (["doors", 0, "state"], True, 'doors[0].state: expected "open" or "closed"'),
     (["rooms"], "bedroom", "rooms: expected a list"),
     (["rooms", 0], "bedroom", "rooms[0]: expected an object"),
-    (["rooms", 0, "polygon"], [[0, 0], [5, 0]], "rooms[0].polygon: expected a polygon of at least 3 points"),
+    (["rooms", 0, "polygon"], [[0, 0], [5, 0]], "rooms[0].polygon: expected a polygon of 3 to 100 points"),
     (["rooms", 0, "polygon", 1, 1], 1e8, "rooms: expected a home of at most 200 m"),
     (["objects"], None, "objects: expected a list"),
     (["objects", 0], 3, "objects[0]: expected an object"),
-    (["objects", 0, "polygon"], ..., "objects[0].polygon: expected a polygon of at least 3 points"),
-    (["objects", 0, "polygon"], [[1, 1], [2, 1]], "objects[0].polygon: expected a polygon of at least 3 points"),
+    (["objects", 0, "polygon"], ..., "objects[0].polygon: expected a polygon of 3 to 100 points"),
+    (["objects", 0, "polygon"], [[1, 1], [2, 1]], "objects[0].polygon: expected a polygon of 3 to 100 points"),
+    (["objects", 0, "polygon"], [[1, 1], [2, 1]] * 51, "objects[0].polygon: expected a polygon of 3 to 100 points"),
     (["objects", 0, "polygon", 1], [1, 2, 3], "objects[0].polygon: expected a list of 2 numbers"),
     (["objects", 0, "polygon", 1, 0], None, "objects[0].polygon: expected a number"),
     (["objects", 0, "polygon", 1, 0], 1e300, "objects[0].polygon: expected a number"),
@@ -129,6 +130,20 @@ def test_no_file_and_a_folder_are_refused_by_name(tmp_path):
         with pytest.raises(ValueError) as refusal:
             floor_plan.load(path)
         assert str(refusal.value).startswith(f"{path}: expected a floor plan, found no readable file")
+
+
+def test_a_home_too_far_from_the_origin_for_particles_of_32_bits_is_refused():
+    far = {**GOOD, "rooms": [], "walls": [[9_990, 0, 9_995, 0], [9_995, 0, 10_000, 5]]}
+    assert floor_plan.check(far) == far
+    with pytest.raises(ValueError, match=r"walls: expected a home within 10000 m of the origin, found 10000\.5"):
+        floor_plan.check({**far, "walls": [*far["walls"], [9_990, 0, 10_000.5, 0]]})
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path):
+    path = tmp_path / "home.json"
+    path.write_text('{"walls": [[0, 0, 4, 0]], "objects": [{"class": "bed", "class": "sofa"}]}')
+    with pytest.raises(ValueError, match=f"{path}: .*the key 'class' twice in one object"):
+        floor_plan.load(path)
 
 
 def test_a_plan_that_never_was_a_file_is_checked_too():

@@ -206,7 +206,13 @@ def test_a_file_that_is_no_network_is_refused(tmp_path, change):
         gcn.GCN.load(tmp_path / "gcn.npz")
 
 
-@pytest.mark.parametrize("places", [[0, 1, 2], [], [0] * 5 + [K], [0] * 5 + [-1]], ids=str)
+@pytest.mark.parametrize("how", [{"batch": 0}, {"batch": -1}, {"epochs": -1}, {"rate": np.nan}], ids=str)
+def test_a_training_that_cannot_be_is_refused(how):
+    with pytest.raises(ValueError, match="batch, epochs, rate: expected at least 1, 0 and 0, found "):
+        gcn.train(net(), graphs_of(random_parts(0)), np.zeros(len(SIZES), int), np.random.default_rng(0), **how)
+
+
+@pytest.mark.parametrize("places", [[0, 1, 2], [], [0] * 5 + [K], [0] * 5 + [-1], [0.5] * 6, [True] * 6], ids=str)
 def test_training_without_one_known_place_for_each_graph_is_refused(places):
     with pytest.raises(ValueError, match="places: expected .*, found "):
         gcn.train(net(), graphs_of(random_parts(0)), places, np.random.default_rng(0))

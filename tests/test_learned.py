@@ -77,6 +77,14 @@ def test_learning_that_is_interrupted_is_begun_again(tmp_path):
     assert Part().get(tmp_path, seed=0) == 1
 
 
+def test_a_file_under_another_ones_name_is_refused(tmp_path):
+    Part().get(tmp_path, seed=0)
+    (path,) = tmp_path.iterdir()
+    path.rename(learned.path_of(tmp_path, "part", {"seed": 1}))
+    with pytest.raises(ValueError, match=r"part-.*: expected what was made by {'seed': 1}, found .* by {'seed': 0}"):
+        Part().get(tmp_path, seed=1)
+
+
 def truncated(path):
     path.write_bytes(path.read_bytes()[:-20])
 
@@ -277,7 +285,7 @@ def test_a_file_of_something_else_is_refused_by_name(monkeypatch, tmp_path, part
         get(part, tmp_path, **WAYS[part])(path)
 
 
-@pytest.mark.parametrize("sequence", [[9, 9, 9, 9], [0, 1, -1, 2], [0.5]])
+@pytest.mark.parametrize("sequence", [[9, 9, 9, 9], [0, 1, -1, 2], [0.5], [0, 0], [], [[0] * 4], 0])
 def test_a_sequence_of_no_actions_is_refused(monkeypatch, tmp_path, sequence):
     monkeypatch.setattr(learned, "kept", lambda folder, name, settings, load, learn: load)
     save_arrays(tmp_path / "scan.npz", {}, sequence=np.array(sequence))

@@ -172,15 +172,26 @@ def test_what_robots_do_in_lockstep_is_searched_for_once(monkeypatch):
     assert searched == [8] * 4 * A  # the last of five looks needs no value
 
 
+def test_lists_teach_as_arrays_do():
+    (lists, arrays), states = (NNQL(K, A) for _ in range(2)), random_states(np.random.default_rng(0), 2)
+    step = states, [2, 0], [1, -1], states[::-1], [True, False]
+    lists.learn(*(part if part is states else list(part) for part in step))
+    arrays.learn(*map(np.array, step))
+    for one, other in zip(lists.values, arrays.values, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert [len(values) for values in lists.values] == [1, 0, 1]
+
+
 def test_epsilon_is_that_of_the_paper():
     np.testing.assert_allclose(epsilon(np.array([0, 9, 99, 9999])), [1 / 1.1, 1 / 2, 1 / 11, 1 / 1001])
 
 
-@pytest.mark.parametrize(("actions", "rewards"), [([0, A], [1.0, 1.0]), ([0, -1], [1.0, 1.0]), ([0, 1], [1.0, np.nan])])
+@pytest.mark.parametrize(("actions", "rewards"), [([0, A], [1.0, 1.0]), ([0, -1], [1.0, 1.0]), ([0, 1], [1.0, np.nan]),
+                                                  ([0], [1.0, 1.0]), ([0, 1, 1], [1.0, 1.0]), ([0, 1], 1.0), ([], [])])
 def test_steps_that_cannot_be_are_refused_and_change_nothing(actions, rewards):
     store, states = lived(5), random_states(np.random.default_rng(0), 2)
     before = [values.copy() for values in store.values]
-    with pytest.raises(ValueError, match=r"actions, rewards: expected 0\.\.2 and finite numbers, found "):
+    with pytest.raises(ValueError, match=r"actions, rewards: expected 0\.\.2 and finite numbers, one for each of 2 "):
         store.learn(states, np.array(actions), np.array(rewards), states, np.zeros(2, bool))
     for values, then in zip(store.values, before, strict=True):
         np.testing.assert_array_equal(values, then)
@@ -196,3 +207,22 @@ def test_a_file_that_is_no_store_is_refused(tmp_path, change):
     save_arrays(path, "a test", **arrays | change)
     with pytest.raises(ValueError, match=r"store\.npz: expected states \(n, K\) and n finite values of action \d"):
         NNQL.load(path)
+
+
+@pytest.mark.parametrize("change", [{"states0": np.ones((9, K), np.float32)}, {"changed1": np.zeros(1, int)},
+                                    {"born2": np.zeros(0, int)}], ids=lambda change: next(iter(change)))
+def test_a_store_that_does_not_fit_together_is_refused_by_name(tmp_path, change):
+    path, store = tmp_path / "store.npz", lived(5)
+    store.checkpoint()
+    store.save(path, "a test")
+    arrays, _ = load_arrays(path)
+    if "states0" in change:
+        change |= {"values0": np.zeros(9)}
+    save_arrays(path, "a test", **arrays | change)
+    with pytest.raises(ValueError, match=r"store\.npz: expected a store of state-action pairs, found another one \("):
+        NNQL.load(path)
+
+
+def test_no_neighbours_are_refused():
+    with pytest.raises(ValueError, match="k: expected a whole number from 1 to inf, found 0"):
+        NNQL(K, A, k=0)

@@ -206,6 +206,33 @@ def test_pooling_is_that_of_the_plain_loop(pooling):
         np.testing.assert_allclose(pooled[b], plain, rtol=1e-6)
 
 
+@pytest.mark.parametrize("kind", [bool, np.uint8, np.int8, int])
+def test_likelihoods_of_any_kind_of_numbers_start_the_filter_alike(kind):
+    likelihood = np.zeros((1, K), kind)
+    likelihood[0, [5, 1]] = 100, 50
+    one, other = (new_filter(likelihood.astype(kind)) for kind in (kind, float))
+    for name, value in state(one).items():
+        np.testing.assert_array_equal(value, getattr(other, name))
+
+
+@pytest.mark.parametrize("size", [{"n_particles": 0}, {"n_start_places": 0}, {"n_start_places": -1}], ids=str)
+def test_a_filter_of_nothing_is_refused(size):
+    with pytest.raises(ValueError, match="particles: expected at least one, in at least one place"):
+        ParticleFilter(GRID, np.ones((1, K)), np.random.default_rng(0), **size)
+    with pytest.raises(ValueError, match=r"particles: expected .* likelihoods \(B, K\), found .* \(7,\)"):
+        ParticleFilter(GRID, np.ones(7), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("odometry", [[0.5, 0], [[0.5, 0]] * 2, [[np.nan, 0]], [[0.5]]], ids=str)
+def test_an_odometry_that_cannot_be_is_refused_and_moves_nothing(odometry):
+    belief = new_filter()
+    before = state(belief)
+    with pytest.raises(ValueError, match="odometry: expected 1 x 2 finite numbers, found "):
+        belief.predict(odometry)
+    for name, value in before.items():
+        np.testing.assert_array_equal(getattr(belief, name), value)
+
+
 def test_a_belief_about_what_comes_next_is_pooled_after_weighing_by_ones():
     belief = new_filter()
     before = belief.belief(K)

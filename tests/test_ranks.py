@@ -54,3 +54,9 @@ def test_one_place_is_the_best_and_no_view_has_no_rank():
 def test_scores_that_are_not_numbers_are_refused():
     with pytest.raises(ValueError, match="scores: expected numbers, found 2 NaN"):
         ranks(np.array([[0, np.nan], [np.nan, 1]]))
+
+
+@pytest.mark.parametrize("kind", [bool, np.uint8, np.int8, np.uint64, object])
+def test_scores_of_any_kind_of_numbers_rank_alike(kind):
+    scores = np.array([[0, 5, 100]]).astype(kind)
+    assert ranks(scores).tolist() == ranks(scores.astype(float)).tolist()

@@ -18,6 +18,7 @@ from gnl.experiment import to_bytes
 from gnl.paper import table_1
 
 N = 40
+SETTINGS = {"episodes": 10_000, "tests": N}
 near = partial(pytest.approx, abs=0.051)  # as one decimal can be
 GAPS = (0.2, 10), (0.2, 90), (1.0, 90)
 METHODS = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
@@ -38,6 +39,7 @@ def folder(tmp_path_factory):
     for i, (world, (m, deg)) in enumerate(itertools.product((800, 801), GAPS)):
         tests = {"MV": outcome(rng, 0.4), "Scan": outcome(rng, 0.55), "Ours+": outcome(rng, 0.5)}
         result = {"cell": {"world": world, "t_xy_m": m, "t_theta_deg": deg, "seed": 0}, "sequence": [0] * 4,
+                  "name": f"{world}-{m:g}m-{deg}deg-seed0", "settings": SETTINGS,
                   "tests": tests, "checkpoints": [outcome(rng, 0.36 + 0.01 * i) for i in range(10)],
                   "validation": [outcome(rng, 0.4) for _ in range(10)],
                   "from training starts": {name: outcome(rng, share) for name, share in
@@ -49,7 +51,7 @@ def folder(tmp_path_factory):
             path = out / kind / f"{world}-{m:g}m-{deg}deg-seed0.json"
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(to_bytes(value))
-    (out / "settings.json").write_bytes(to_bytes({"episodes": 10_000, "tests": N}))
+    (out / "settings.json").write_bytes(to_bytes(SETTINGS))
     return out
 
 
@@ -323,6 +325,18 @@ def test_a_cell_of_nine_checkpoints_is_named(folder, tmp_path, capsys):
     with pytest.raises(SystemExit):
         main(["report", "--out", str(tmp_path / "one")])
     assert "found ValueError('9 checkpoints, 10 validated')" in capsys.readouterr().err
+
+
+def test_cells_of_other_settings_are_not_mixed(folder, tmp_path, capsys):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
+    path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
+    path.write_bytes(to_bytes(json.loads(path.read_bytes()) | {"settings": SETTINGS | {"episodes": 320}}))
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(tmp_path / "one")])
+    assert exit.value.code == 2
+    err = capsys.readouterr().err
+    assert f"{path}: expected results of the settings in settings.json, found some of " in err
+    assert err.count("\n") == 1
 
 
 def with_a_planner(folder, to, cells):

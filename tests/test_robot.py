@@ -142,6 +142,11 @@ def test_noise_is_drawn_alike_whatever_the_robots_do(two_rooms):
     assert states[0] == states[1] == states[2]
 
 
+def test_poses_that_are_none_are_refused(home):
+    with pytest.raises(ValueError, match="poses: expected finite numbers, found nan"):
+        Robot(home).step([[1, 2, np.nan]], [0], rng())
+
+
 @pytest.mark.parametrize("actions", [0, [0], [0, 3], [0, -1], [0.5, 1], [[0, 1]]], ids=str)
 def test_actions_that_are_none_are_refused(home, actions):
     with pytest.raises(ValueError, match=rf"actions: expected 2 of 0\.\.{N_ACTIONS - 1}, found "):

@@ -167,7 +167,9 @@ def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, done, capsy
 
 
 @pytest.mark.parametrize(("kind", "change"), [
-    ("cells", {"checkpoints": []}), ("cells", {"tests": {}}), ("cells", {"validation": None}),
+    ("cells", {"checkpoints": []}), ("cells", {"tests": {}}), ("cells", {"from training starts": {}}),
+    ("cells", {"cell": {"world": "800", "t_xy_m": 1, "t_theta_deg": 90, "seed": 0}}), ("costs", {"versions": []}),
+    ("costs", {"machine": 5}), ("cells", {"validation": None}),
     ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": 70, "seed": 0}}), ("cells", {"cell": "800"}),
     ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}), ("costs", {"versions": 3}), ("costs", {"views": 0})])
 def test_no_damaged_file_is_taken_for_a_finished_cell_and_both_are_kept(done, capsys, kind, change):
@@ -183,6 +185,38 @@ def test_no_damaged_file_is_taken_for_a_finished_cell_and_both_are_kept(done, ca
     assert all(file.with_suffix(".damaged").exists() and not file.exists() for file in files)
 
 
+@pytest.mark.parametrize("change", [
+    lambda mv: mv.pop("location"), lambda mv: mv["place"].pop(), lambda mv: mv["location"].append("01" * 6),
+    lambda mv: mv.update(place=["x" * 12] * 5), lambda mv: mv.update(place=["0" * 11] * 5, location=["0" * 11] * 5)],
+    ids=["no location", "four looks", "six looks", "neither right nor wrong", "fewer episodes"])
+def test_no_outcome_that_the_report_could_not_read_is_taken_for_one(done, capsys, change):
+    path = done / "cells" / f"{NAMES[0]}.json"
+    result = json.loads(path.read_bytes())
+    change(result["tests"]["MV"])
+    path.write_bytes(to_bytes(result))
+    assert not table.finished(done, NAMES[0], load_cell)
+    assert capsys.readouterr().err.startswith(f"{path}: expected the outcomes of a cell, found ")
+
+
+@pytest.mark.parametrize("change", [
+    lambda starts: starts.pop("tests"), lambda starts: starts.update(tests=starts["tests"][:1]),
+    lambda starts: starts.update(training=starts["training"] * np.nan)], ids=["none", "one", "no numbers"])
+def test_starts_that_are_not_those_of_the_settings_are_named(prepared, capsys, change):
+    path = prepared / "data" / f"starts-{NAMES[0]}.npz"
+    starts, made_by = files.load_arrays(path)
+    change(starts)
+    files.save_arrays(path, made_by, **starts)
+    assert main_here(prepared, "--jobs", 1) == 2
+    assert f"python -m gnl: {path}: expected start poses " in capsys.readouterr().err
+
+
+def test_a_home_of_another_name_is_refused(prepared, capsys):
+    path = prepared / "data" / "home-800.json"
+    shutil.copy(prepared / "data" / "home-801.json", path)
+    assert main_here(prepared, "--jobs", 1) == 2
+    assert f"python -m gnl: {path}: expected home-800, found home-801" in capsys.readouterr().err
+
+
 def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does_not_tell(done, capsys):
     (done / "settings.json").unlink()
     assert main_here(done, "--tests", 7) == 2
@@ -194,6 +228,7 @@ def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does
 
 @pytest.mark.parametrize(("options", "words"), [
     (["--worlds", "17"], "--worlds: expected seeds of homes, 800 or more, found '17'"),
+    (["--worlds", "\u00b2"], "--worlds: expected seeds of homes, 800 or more, found '\u00b2'"),
     (["--worlds", "kitchen"], "--worlds: expected seeds of homes, 800 or more, found 'kitchen'"),
     (["--gaps", "0.3/10"], "found '0.3/10'"), (["--gaps", "near"], "found 'near'"),
     (["--jobs", "0"], "--jobs: expected at least 1, found 0"), (["--jobs", "-2"], "found -2"),
@@ -248,7 +283,7 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
         return SimpleNamespace(returncode=0)
 
     monkeypatch.setattr(table, "subprocess", SimpleNamespace(run=program))
-    monkeypatch.setattr(table, "World", SimpleNamespace(load=lambda path: path.name))
+    monkeypatch.setattr(table, "World", SimpleNamespace(load=lambda path: SimpleNamespace(name=path.stem)))
     for double in (segmentation_net, place_classifiers, load_views):
         monkeypatch.setattr(learned, double.__name__, double)
     (world, one), = table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
@@ -260,7 +295,7 @@ def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeyp
     assert asked == {"net": (("photographs", "truth"), made_by, 107),
                      "gcn": (108, {"net": learned.fingerprint(net), "noise": 104}, "pool",
                              {"epochs": 109, "batch": 110, "rate": 111})}
-    assert (world, one.world, one.net, one.gcn, one.noise) == (800, "home-800.json", net, "GCN", 104)
+    assert (world, one.world.name, one.net, one.gcn, one.noise) == (800, "home-800", net, "GCN", 104)
     made_by["noise"] = 3
     with pytest.raises(ValueError, match=r"views\.npz: expected results of noise 104, found some of 3; "):
         next(table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool"))

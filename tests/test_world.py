@@ -197,6 +197,14 @@ def test_a_front_door_through_which_a_ball_would_fit_is_shut_to_it():
     assert World(plan).free_space.inside([[1.5, 2], [4.5, 2], [-1.5, 2]]).tolist() == [True, True, False]
 
 
+@pytest.mark.parametrize("ask", ["is_free", "is_reachable"])
+def test_points_are_lists_or_arrays_of_two_numbers(two_rooms, ask):
+    ask = getattr(two_rooms, ask)
+    assert ask([[3.2, 1.0], [1.1, 0.7]]).tolist() == ask(np.array([[3.2, 1.0], [1.1, 0.7]])).tolist() == [True, False]
+    with pytest.raises(ValueError, match=r"xy: expected shape \(n, 2\), found \(4, 3\)"):
+        ask(np.zeros((4, 3)))
+
+
 def test_outside_nothing_is_free():
     assert World(room()).is_free([[3, 2], [-1.5, 2], [3, 5.5], [300, 2]]).tolist() == [True, False, False, False]
 

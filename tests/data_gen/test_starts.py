@@ -173,7 +173,19 @@ def test_a_home_is_drawn_with_its_starts_and_again_if_it_is_lost(tmp_path):
     assert drawn() == first
 
 
-@pytest.mark.parametrize("words", ["eight 0.2 10 0", "800 x 10 0", "800 0.2 ten 0", "800 0.2 10 -1", "800 nan 10 0"])
+def test_starts_are_not_drawn_in_another_home(tmp_path, capsys):
+    plan = tmp_path / "home-801.json"
+    make_home(802).save(plan)
+    before = plan.read_bytes()
+    with pytest.raises(SystemExit) as exit:
+        main(["starts", str(tmp_path), "--cell", "801", "0.2", "10", "0", "--training", "5", "--tests", "3"])
+    assert exit.value.code == 2
+    assert f"{plan}: expected home-801 or nothing, found another home" in capsys.readouterr().err
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [before]
+
+
+@pytest.mark.parametrize("words", ["eight 0.2 10 0", "800 x 10 0", "800 0.2 ten 0", "800 0.2 10 -1", "800 nan 10 0",
+                                   "800 0.20000001 10 0"])
 def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     with pytest.raises(SystemExit) as exit:
         main(["starts", str(tmp_path / "out"), "--cell", *words.split()])

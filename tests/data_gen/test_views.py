@@ -178,6 +178,17 @@ def test_what_is_no_command_has_status_2(capsys, tmp_path, line):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("made_by", ["a test", {}, {"episodes": 9}], ids=str)
+def test_views_are_not_written_over_a_file_of_something_else(tokens, tmp_path, capsys, made_by):
+    path = tmp_path / "store.npz"
+    save_arrays(path, made_by, a=np.arange(9))
+    before = path.read_bytes()
+    assert run("views", path, "--homes", 1, "--views", 1) == 2
+    said = f"python -m data_gen: {path}: expected views or nothing, found a file made by {made_by}\n"
+    assert capsys.readouterr().err == said
+    assert path.read_bytes() == before
+
+
 def test_views_are_not_written_over_a_damaged_file(tokens, tmp_path, capsys):
     path = tmp_path / "views.npz"
     save_arrays(path, {}, a=np.arange(100))
