@@ -70,7 +70,7 @@ clean:
 	@$(PYTHON) -c 'import sys; v = sys.version_info; v >= (3, 10) or \
 	    sys.exit(f"gnl: expected python >= 3.10, found {v[0]}.{v[1]}; name another with make PYTHON=...")'
 	@echo "setting up .venv ..."
-	@$(PYTHON) -m venv .venv
+	@$(PYTHON) -m venv --clear .venv
 	@$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $@
 

@@ -130,9 +130,11 @@ def graph(graphs, picture, full=True):
     colours = [colour_of(label) for label, _, _ in words]
     names = [f"{CLASSES[c]}, {SIZES[s]}, {LOCATIONS[l]}" if full else CLASSES[c] for c, s, l in words]
     taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name shall cover them, nor another name
+    along, (a, b) = np.linspace(0, 1, 40)[:, None, None], middles[graphs.edges].swapaxes(0, 1)
+    lines = (a + along * (b - a)).reshape(-1, 2)  # points of the edges; no name should cover them
     for middle, name in zip(middles, names, strict=True):
         width = text_width(name, 11) + 8
-        taken = np.vstack([taken, _spot(middle, width, 16, taken, picture.size)])
+        taken = np.vstack([taken, _spot(middle, width, 16, taken, lines, picture.size)])
     plates = taken[len(middles):]
 
     for box, colour in zip(boxes, colours, strict=True):
@@ -200,12 +202,13 @@ def sheet(pictures, titles=None, columns=None, margin=12):
     return canvas.picture()
 
 
-def _spot(node, width, height, taken, size):
-    """Where the words of a node go: near it, in the picture, as little as can be over the boxes `taken`."""
+def _spot(node, width, height, taken, lines, size):
+    """Where the words of a node go: near it, in the picture, as little as can be over the boxes `taken` and `lines`."""
     def cost(box):
         low, high = np.maximum(box[:2], taken[:, :2]), np.minimum(box[2:], taken[:, 2:])
         overlap = (high - low).clip(0).prod(1).sum()
-        return 1e3 * overlap + abs(box[0] + width / 2 - node[0]) / 4 + abs(box[1] + height / 2 - node[1])
+        covered = ((lines >= box[:2]) & (lines <= box[2:])).all(1).sum()
+        return 1e3 * overlap + 4 * covered + abs(box[0] + width / 2 - node[0]) / 4 + abs(box[1] + height / 2 - node[1])
 
     lefts = np.clip(node[0] + np.array([8, -width / 2, -width - 8]), 1, size[0] - width - 1)
     tops = np.clip(node[1] - height / 2 + np.arange(-144, 145, 6), 1, size[1] - height - 1)

@@ -241,12 +241,20 @@ def test_a_graph_of_one_node_shows_it_at_the_middle_of_its_box():
 def test_words_of_nodes_at_one_spot_do_not_cover_each_other():
     taken = np.zeros((0, 4))
     for _ in range(6):
-        box = draw._spot(np.array([100, 100]), 90, 16, taken, (200, 200))
+        box = draw._spot(np.array([100, 100]), 90, 16, taken, np.empty((0, 2)), (200, 200))
         assert 0 <= box[0] < box[2] <= 200
         assert 0 <= box[1] < box[3] <= 200
         low, high = np.maximum(box[:2], taken[:, :2]), np.minimum(box[2:], taken[:, 2:])
         assert not (high > low).all(1).any()
         taken = np.vstack([taken, box])
+
+
+@pytest.mark.parametrize("toward", [(1, 0), (-1, 0), (0, 1), (0, -1)], ids=str)
+def test_words_keep_off_the_edges_of_their_node(toward):
+    node = np.array([100, 100])
+    edge = node + np.linspace(0, 90, 40)[:, None] * toward
+    x0, y0, x1, y1 = draw._spot(node, 60, 16, np.array([[94, 94, 106, 106]]), edge, (200, 200))
+    assert not ((edge >= [x0, y0]) & (edge <= [x1, y1])).all(1).any()
 
 
 @pytest.mark.parametrize("rank", [1, 3, 40])
