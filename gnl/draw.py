@@ -208,7 +208,7 @@ def _spot(node, width, height, taken, lines, size):
         low, high = np.maximum(box[:2], taken[:, :2]), np.minimum(box[2:], taken[:, 2:])
         overlap = (high - low).clip(0).prod(1).sum()
         covered = ((lines >= box[:2]) & (lines <= box[2:])).all(1).sum()
-        return 1e3 * overlap + 4 * covered + abs(box[0] + width / 2 - node[0]) / 4 + abs(box[1] + height / 2 - node[1])
+        return 1e3 * overlap + 2 * covered + abs(box[0] + width / 2 - node[0]) / 4 + abs(box[1] + height / 2 - node[1])
 
     lefts = np.clip(node[0] + np.array([8, -width / 2, -width - 8]), 1, size[0] - width - 1)
     tops = np.clip(node[1] - height / 2 + np.arange(-144, 145, 6), 1, size[1] - height - 1)

@@ -1,7 +1,7 @@
 """Learned parts, each kept in a file: learnt when it is not there yet, loaded when it is.
 
-A file's name carries a digest of the settings that went into it (seed, floor plan, training views), so others make
-another file and never a wrong answer. Constants of the modules are not among them: to change one, begin with no files.
+A file's name carries a digest of the settings that went into it (seed, floor plan, training views) and of the code of
+the stages, so others make another file and never a wrong answer.
 """
 
 import hashlib
@@ -20,6 +20,16 @@ from .robot import N_ACTIONS, Robot
 from .scene_graph import join
 from .senses import Senses
 
+# Whoever changes one of these modules learns anew.
+STAGES = ("camera", "checkpoints", "classes", "episode", "floor_plan", "free_space", "gcn", "kdtree", "learned", "nn",
+          "nnql", "particles", "photo", "places", "planners", "polygons", "rank_index", "ranks", "robot", "scene_graph",
+          "segnet", "senses", "strip", "world")
+
+
+def code(folder=Path(__file__).parent, modules=STAGES):
+    """Eight hex digits of the text of some modules."""
+    return digest([(folder / f"{name}.py").read_text(encoding="utf-8") for name in modules])
+
 
 def digest(settings):
     """Eight hex digits of anything that JSON can hold."""
@@ -36,7 +46,7 @@ def fingerprint(params):
 
 def path_of(folder, name, settings):
     """The file of the part `name` made with `settings`."""
-    return Path(folder) / f"{name}-{digest(settings)}.npz"
+    return Path(folder) / f"{name}-{digest([settings, code()])}.npz"
 
 
 def kept(folder, name, settings, load, learn):

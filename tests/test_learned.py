@@ -1,5 +1,6 @@
 """Learned parts: learnt once and then loaded, one file for each way to learn, and never a wrong or broken one."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -51,6 +52,14 @@ def test_other_settings_are_learnt_into_another_file(tmp_path):
     part = Part()
     assert [part.get(tmp_path, seed=seed) for seed in (0, 1, 0)] == [1, 2, 1]
     assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("name", learned.STAGES)
+def test_other_code_of_a_stage_is_learnt_into_another_file(tmp_path, monkeypatch, name):
+    part, read = Part(), Path.read_text
+    assert part.get(tmp_path, seed=0) == 1
+    monkeypatch.setattr(Path, "read_text", lambda path, **how: read(path, **how) + "#" * (path.stem == name))
+    assert part.get(tmp_path, seed=0) == 2
 
 
 def test_the_order_of_settings_does_not_matter():

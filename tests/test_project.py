@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from data_gen.views import MODULES as MODULES_OF_VIEWS
+from gnl.learned import STAGES
+
 ROOT = Path(__file__).parents[1]
 MODULES = {f"{path.parent.name}.{path.stem}": path for path in ROOT.glob("*/*.py")
            if path.parent.name in ("gnl", "data_gen")}
@@ -61,6 +64,15 @@ def test_imports_point_one_way():
         for name in free:
             del below[name]
     assert below == {}, "these import one another in a circle"
+
+
+@pytest.mark.parametrize(("name", "listed"), [("gnl.learned", STAGES), ("data_gen.views", MODULES_OF_VIEWS)])
+def test_all_that_decides_what_is_learned_is_in_the_digest_of_its_code(name, listed):
+    package, found, new = name.partition(".")[0], set(), {name}
+    while new:
+        found |= new
+        new = {other for one in new for other in imports(one) if other.startswith(f"{package}.")} - found
+    assert {f"{package}.{stage}" for stage in listed} == found - {"gnl.files", "gnl.__init__"}
 
 
 def test_pictures_never_leak_into_the_algorithm():

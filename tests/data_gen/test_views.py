@@ -141,7 +141,9 @@ def test_a_file_of_views_says_what_made_it_and_is_made_once(tokens, tmp_path, ca
     path = tmp_path / "views.npz"
     options = ["--homes", 2, "--views", 6, "--seed", 3, "--noise", 0.5]
     assert run("views", path, *options) == 0
-    assert load_arrays(path)[1] == {"homes": 2, "views": 6, "seed": 3, "noise": 0.5}
+    made_by = load_arrays(path)[1]
+    assert len(made_by.pop("code")) == 8
+    assert made_by == {"homes": 2, "views": 6, "seed": 3, "noise": 0.5}
     assert capsys.readouterr().out.count("\n") == 1
     before = path.stat()
     assert run("views", path, *options) == 0
@@ -178,7 +180,15 @@ def test_what_is_no_command_has_status_2(capsys, tmp_path, line):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("made_by", ["a test", {}, {"episodes": 9}], ids=str)
+def test_views_of_other_code_are_made_anew(tokens, tmp_path, monkeypatch):
+    path, options = tmp_path / "views.npz", ["--homes", 2, "--views", 6]
+    assert run("views", path, *options) == 0
+    monkeypatch.setattr(views, "code", lambda *_: "other")
+    assert run("views", path, *options) == 0
+    assert tokens == [0, 1, 0, 1]
+
+
+@pytest.mark.parametrize("made_by", ["a test", {}, {"episodes": 9}, {"views": 9}], ids=str)
 def test_views_are_not_written_over_a_file_of_something_else(tokens, tmp_path, capsys, made_by):
     path = tmp_path / "store.npz"
     save_arrays(path, made_by, a=np.arange(9))
