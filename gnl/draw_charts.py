@@ -35,8 +35,9 @@ def _heat_map(points, gaps_m, gaps_deg):
             value = points.get((m, deg))
             page.box(x + 1, y + 1, x + w - 1, y + h - 1, FAINT if value is None else shade(value))
             if value is not None:
-                page.text((x + w / 2, y + h / 2), f"{value:+.1f}", 12, INK, "mm")
-    page.text((left + w * len(gaps_m) / 2, h * len(gaps_deg) + 32), "least distance of a test start", 12, QUIET, "mm")
+                page.text((x + w / 2, y + h / 2), f"{round(value, 1):+g}", 12, INK, "mm")
+    words = "least distance (and turn) to a test start"
+    page.text((left + w * len(gaps_m) / 2, h * len(gaps_deg) + 32), words, 12, QUIET, "mm")
     return page.picture()
 
 

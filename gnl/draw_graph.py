@@ -63,12 +63,13 @@ def load(path, ade20k=False):
         raise ValueError(f"{path}: expected one image, found {n_frames}")
     if image.format == "JPEG":
         raise ValueError(f"{path}: expected an image that keeps indices as they are, such as PNG, found JPEG")
-    if image.mode in ("RGB", "P") and not ade20k:
+    if image.mode in ("RGB", "RGBA", "P") and not ade20k:
         labels = by_colour(np.array(image.convert("RGB")))
         if labels.max() < N_CLASSES:
             return labels
     if image.mode not in ("L", "P", "I", "I;16", "1"):
-        raise ValueError(f"{path}: expected one class index a pixel, found a picture of mode {image.mode}")
+        raise ValueError(f"{path}: expected one class index a pixel, or the colours of classes.py and no others, "
+                         f"found a picture of mode {image.mode}")
     labels = np.array(image).astype(int)
     highest = 150 if ade20k else N_CLASSES - 1
     if labels.min() < 0 or labels.max() > highest:

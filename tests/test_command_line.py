@@ -167,10 +167,10 @@ def test_our_own_indices_read_as_those_of_ade20k_are_hinted_at(tmp_path, capsys)
     assert "without --ade20k" in capsys.readouterr().out.splitlines()[1]
 
 
-@pytest.mark.parametrize("mode", ["RGB", "P"])
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "P"])
 def test_a_picture_all_in_our_colours_is_read_by_them(mode, tmp_path, capsys):
     """Whatever order a drawing program has given its palette."""
-    picture = Image.fromarray(PALETTE[LABELS])
+    picture = Image.fromarray(PALETTE[LABELS]).convert("RGBA" if mode == "RGBA" else "RGB")
     if mode == "P":
         picture = picture.quantize(8)
         assert (np.array(picture) != LABELS).any()

@@ -257,8 +257,20 @@ def test_the_episode_that_is_shown_begins_in_doubt_and_ends_well_if_any_does(mon
         return [SimpleNamespace(answer=int(right), place=1, of=start) for right in start]
 
     monkeypatch.setattr(demo.replay, "collect", collect)
-    looks = demo.telling_episode(None, None, None, None, episodes, 7, lambda share: None)
+    grid = SimpleNamespace(location_of=lambda place: place)
+    looks = demo.telling_episode(None, None, grid, None, episodes, 7, lambda share: None)
     assert looks[0].of == shown
+
+
+def test_an_answer_that_moves_to_the_robot_is_shown_rather_than_a_robot_that_moves_to_the_answer(monkeypatch):
+    def collect(_senses, _robot, _grid, _plan, start, seed, _store):
+        return [SimpleNamespace(answer=answer, place=place, of=start) for answer, place in zip(*start, strict=True)]
+
+    monkeypatch.setattr(demo.replay, "collect", collect)
+    grid = SimpleNamespace(location_of=lambda place: place // 12)
+    stays, moves = ((13, 13, 14, 14), (1, 2, 14, 14)), ((13, 13, 14, 1), (1, 2, 3, 1))
+    looks = demo.telling_episode(None, None, grid, None, [stays, moves], 7, lambda share: None)
+    assert looks[0].of == moves
 
 
 def test_the_table_holds_accuracies_and_their_differences_in_pairs(capsys):

@@ -50,7 +50,7 @@ def written(monkeypatch):
 
 def test_fields_and_bars_name_their_numbers(written):
     draw_charts.heat_maps({800: {(0.2, 10): 12.0, (1.0, 90): -3.51}}, (0.2, 1.0), (10, 90))
-    assert [words for *_, words in written if words[0] in "+-"] == ["+12.0", "-3.5"]
+    assert [words for *_, words in written if words[0] in "+-"] == ["+12", "-3.5"]
     written.clear()
     draw_charts.histogram({0: 2, 6: 4})
     numbers = [int(words) for *_, words in written if words.isdigit()]
@@ -147,7 +147,7 @@ def test_lines_take_the_usual_colours_in_turn():
 def test_names_of_gaps_stand_beside_their_fields_and_ticks_beside_their_values(written):
     draw_charts.heat_maps({800: {(0.2, 10): 12.0, (1.0, 90): -3.5}}, (0.2, 1.0), (10, 90))
     at = {words: (x, y) for x, y, words in written}
-    for m, deg, value in (("0.2 m", "10 deg", "+12.0"), ("1 m", "90 deg", "-3.5")):
+    for m, deg, value in (("0.2 m", "10 deg", "+12"), ("1 m", "90 deg", "-3.5")):
         assert (at[m][0], at[deg][1]) == at[value]
     written.clear()
     draw_charts.curves({800: {"Ours": np.full((2, 3), 0.5)}})
