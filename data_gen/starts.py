@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from gnl.canvas import BELIEF, ROBOT
 from gnl.draw import save_png, sheet
 from gnl.experiment import Cell
-from gnl.files import load_arrays, save_arrays
+from gnl.files import check_folder, load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
 from gnl.learned import digest
@@ -46,6 +46,7 @@ def run(args):
         if size < 1:
             raise ValueError(f"--{name}: expected at least 1, found {size}")
     cells, folder = [cell_of(words) for words in args.cell], Path(args.folder)
+    check_folder("folder", folder)
     files = {cell: folder / f"starts-{cell.name}.npz" for cell in cells}
     plans = {cell.world: folder / f"home-{cell.world}.json" for cell in cells}
     todo = [cell for cell, path in files.items()
@@ -56,6 +57,7 @@ def run(args):
     for world, home in homes.items():
         if plans[world].exists() and digest(World.load(plans[world]).plan) != digest(home.plan):
             raise ValueError(f"{plans[world]}: expected {home.name} or nothing, found another home")
+    for world, home in homes.items():
         home.save(plans[world])
     with processes(args.jobs) as pool:
         drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
@@ -75,7 +77,8 @@ def cell_of(words):
         if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m == in_its_name < LARGEST_HOME_M):
             raise ValueError
     except ValueError:
-        raise ValueError(f"--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, found {' '.join(words)}") from None
+        raise ValueError("--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, M of at most six digits, "
+                         f"found {' '.join(words)}") from None
     return cell
 
 

@@ -18,7 +18,7 @@ from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
 from .experiment import Cell, costs, costs_of, now, to_bytes
-from .files import load_json, write_whole
+from .files import check_folder, load_json, write_whole
 from .outcomes import answers, outcomes
 from .paper import WORLDS
 from .places import PlaceGrid
@@ -50,6 +50,7 @@ def run(args):
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
     page = args.page and _read_page(args.page)
     out = Path(args.out)
+    check_folder("--out", out)
     agree(out, asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
     todo = {name: job for name, job in jobs.items() if not finished(out, name, load)}

@@ -1,8 +1,8 @@
 """Other choices than ours where the paper is open: `python -m gnl ablate` measures what each would change.
 
-A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name: one that is
-read when it is used, not a default, such as N_PARTICLES, which is read when its function is defined (for those there
-is `partial`). Its functions are those of a module, for it travels to other processes.
+A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name. The constant
+must be read when it is used: a default (N_PARTICLES) was read when its function was defined; for those there is
+`partial`. Functions are those of a module: a choice is sent to other processes, and a lambda cannot be.
 """
 
 from dataclasses import dataclass, field

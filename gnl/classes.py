@@ -5,7 +5,7 @@ A label image holds the index of a class in CLASSES: 0 wall, 1 floor, ... 9 othe
 
 import numpy as np
 
-# Whoever adds one adds it to the tables of classes, too: PALETTE here, the colours of world.py, GRAIN of photo.py.
+# To add one: its name below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py; then learn anew.
 CLASSES = ("wall", "floor", "ceiling", "bed", "door", "table", "sofa", "refrigerator", "tv", "other")
 WALL, FLOOR, CEILING, BED, DOOR, TABLE, SOFA, REFRIGERATOR, TV, OTHER = range(len(CLASSES))
 N_CLASSES = len(CLASSES)

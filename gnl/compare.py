@@ -44,7 +44,8 @@ def mcnemar(a, b):
     """
     a, b = np.asarray(a), np.asarray(b)
     if a.shape != b.shape or a.ndim != 1 or not (np.isin(a, (0, 1)).all() and np.isin(b, (0, 1)).all()):
-        raise ValueError(f"pairs: expected two equal lists of right (1) and wrong (0), found {a} and {b}")
+        raise ValueError(f"pairs: expected two lists of 0 and 1, equally long, found {a.dtype} {a.shape} "
+                         f"and {b.dtype} {b.shape}")
     a, b = a.astype(bool), b.astype(bool)
     n_a, n_b = int((a & ~b).sum()), int((b & ~a).sum())
     return min(1.0, 2 * bdtr(min(n_a, n_b), n_a + n_b, 0.5))

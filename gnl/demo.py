@@ -9,6 +9,7 @@ import numpy as np
 from . import draw, episode, gcn, learned, planners, replay, segnet
 from .camera import render, true_labels
 from .compare import paired_difference
+from .files import check_folder
 from .photo import check_noise
 from .places import PlaceGrid
 from .ranks import reciprocal_ranks
@@ -83,7 +84,7 @@ def learn(args, scale, helper, world, grid, robot):
     stage = Stage("net")
     views, views_made_by = learned.load_views(args.views)
     n_known, (word, _, seed) = views_made_by.get("homes", 0), world.name.partition("-")
-    if word == "home" and seed.isdecimal() and int(seed) < n_known:
+    if word == "home" and seed.isdecimal() and seed == str(int(seed)) and int(seed) < n_known:
         raise ValueError(f"{args.plan}: expected a home that the net does not learn from (HOUSE from {n_known} on), "
                          f"found {world.name}")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
@@ -144,9 +145,7 @@ def check(args):
             raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
     check_noise(args.noise, "--noise")
     for name in ("out", "pictures"):
-        folder = Path(getattr(args, name) or ".")
-        if folder.exists() and not folder.is_dir():
-            raise ValueError(f"--{name}: expected a folder, found the file {folder}")
+        check_folder(f"--{name}", getattr(args, name) or ".")
 
 
 def rng(args, stream):

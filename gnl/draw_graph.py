@@ -24,12 +24,12 @@ def add_arguments(parser):
 
 def run(args):
     """Print the graph, a node a line, and draw it over the labels."""
-    labels = load(args.labels, args.ade20k)
+    labels, coloured = load(args.labels, args.ade20k)
     out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
     if out.exists() and out.samefile(args.labels):
         raise ValueError(f"--out: expected another file than the labels, found {out}")
     graph = scene_graph(labels)
-    print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels, "
+    print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels{' read by their colours' if coloured else ''}, "
           f"{count(len(graph.words), 'node')}, {count(len(graph.edges), 'edge')}")
     classes = {CLASSES[label] for label, _, _ in words_in_words(graph.words)}
     if len(classes) == 1:
@@ -50,7 +50,7 @@ def count(n, noun):
 
 
 def load(path, ade20k=False):
-    """Labels (H, W) in 0..9 from an image of indices; ValueError that names what is wrong with it."""
+    """Labels (H, W) in 0..9 of an image, and whether its colours tell them; ValueError if nothing does."""
     try:
         with Image.open(path) as image:
             image.load()
@@ -66,7 +66,7 @@ def load(path, ade20k=False):
     if image.mode in ("RGB", "RGBA", "P") and not ade20k:
         labels = by_colour(np.array(image.convert("RGB")))
         if labels.max() < N_CLASSES:
-            return labels
+            return labels, True
     if image.mode not in ("L", "P", "I", "I;16", "1"):
         raise ValueError(f"{path}: expected one class index a pixel, or the colours of classes.py and no others, "
                          f"found a picture of mode {image.mode}")
@@ -75,12 +75,12 @@ def load(path, ade20k=False):
     if labels.min() < 0 or labels.max() > highest:
         hint = "" if ade20k or labels.max() > 150 else "; --ade20k for indices of ADE20K"
         raise ValueError(f"{path}: expected indices 0..{highest}, found {labels.min()}..{labels.max()}{hint}")
-    return from_ade20k(labels) if ade20k else labels
+    return from_ade20k(labels) if ade20k else labels, False
 
 
 def by_colour(rgb):
     """Labels (H, W) of a picture (H, W, 3) in the colours of PALETTE; N_CLASSES where there is another one."""
-    labels = np.full(rgb.shape[:2], N_CLASSES)
-    for label, colour in enumerate(PALETTE):
-        labels[(rgb == colour).all(-1)] = label
-    return labels
+    label_of = np.full(1 << 24, N_CLASSES, np.uint8)
+    label_of[PALETTE @ (1 << np.array([16, 8, 0]))] = range(N_CLASSES)
+    red, green, blue = np.moveaxis(rgb.astype(np.int32), -1, 0)
+    return label_of[red << 16 | green << 8 | blue].astype(int)

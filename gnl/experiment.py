@@ -116,16 +116,16 @@ def costs_of(path):
 def load_cell(path):
     """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
     def look(result):
-        curve([result]), right(result), right(result, "location")
+        curve([result]), right(result)
         by_heart = from_training(result)
         by_heart["MV"], by_heart["Scan"], by_heart["Ours"]
-        sizes = {np.shape(arrays(looks)) for outcome in (*result["tests"].values(), *result["checkpoints"])
-                 for looks in (outcome["place"], outcome["location"])}
-        if len(sizes) > 1:
-            raise ValueError(f"tests of {sizes} episodes and looks")
-        name = Cell(**result["cell"]).name
-        if name != path.stem or not isinstance(result["cell"]["world"], int):
-            raise ValueError(f"those of {name}")
+        for tests in [*result["tests"].values(), *result["checkpoints"]], result["from training starts"].values():
+            sizes = {np.shape(arrays(outcome[name])) for outcome in tests for name in ("place", "location")}
+            if len(sizes) > 1:
+                raise ValueError(f"tests of {sizes} episodes and looks")
+        cell = Cell(**result["cell"])
+        if cell.name != path.stem or not all(isinstance(value, (int, float)) for value in result["cell"].values()):
+            raise ValueError(f"those of {cell}")
         if not len(result["checkpoints"]) == len(result["validation"]) == N_CHECKPOINTS:
             raise ValueError(f"{len(result['checkpoints'])} checkpoints, {len(result['validation'])} validated")
 

@@ -30,9 +30,16 @@ def write_whole(path, data):
         os.replace(temporary, path)
     except BaseException as error:
         os.unlink(temporary)
-        if isinstance(error, OSError) and error.errno:  # a full disk names no file, a folder in the way another one
+        if isinstance(error, OSError) and error.errno:  # it names no file, or the temporary one
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
+
+
+def check_folder(option, path):
+    """ValueError if there is a file where a folder will be."""
+    for part in (Path(path), *Path(path).parents):
+        if part.exists() and not part.is_dir():
+            raise ValueError(f"{option}: expected a folder, found the file {part}")
 
 
 def save_arrays(path, made_by, **arrays):
@@ -69,7 +76,7 @@ def load_json(path, what, look=None):
     """
     try:
         found = json.loads(Path(path).read_bytes())
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:  # JSON may be nested deeper than Python goes
         raise ValueError(f"{path}: expected {what}, found {error}") from None
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected {what}, found a {type(found).__name__}")

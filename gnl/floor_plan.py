@@ -8,19 +8,23 @@
      "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
 
 Metres; `height` is an object's own extent above `z0`; walls end where a door begins. There must be `walls`; of a door
-its segment, of a room its polygon (3 to 100 corners), of an object class, polygon and height. Keys that are not listed
+its segment, of a room its polygon (3 to 400 corners), of an object class, polygon and height. Keys that are not listed
 are left as they are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
 """
 
 import json
 import math
 
+import numpy as np
+
 from .files import write_whole
+from .polygons import inner_corners
 
 WALL_HEIGHT_M = 2.5
 DOOR_HEIGHT_M = 2.0
-LARGEST_HOME_M, FARTHEST_M = 200.0, 10_000.0  # farther from the origin particles, in 32 bits, would move by millimetres
-MOST_CORNERS = 100  # of a polygon; to cover a jagged outline takes time as their number to the third
+LARGEST_HOME_M = 200.0
+FARTHEST_M = 10_000.0  # from the origin: farther off, 32 bits hold a particle's place to no better than a millimetre
+MOST_CORNERS, MOST_INNER = 400, 50  # of a polygon; to cover a jagged one takes time as their number to the third
 HUGE = 1e9
 
 
@@ -38,10 +42,12 @@ def load(path):
 
 def _once(pairs):
     """A dict of pairs whose keys are all different, or ValueError: of two equal ones JSON would keep the last."""
-    names = [name for name, _ in pairs]
-    if twice := {name for name in names if names.count(name) > 1}:
-        raise ValueError(f"the key {min(twice)!r} twice in one object")
-    return dict(pairs)
+    found = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"the key {name!r} twice in one object")
+        found[name] = value
+    return found
 
 
 def save(plan, path):
@@ -80,6 +86,9 @@ def check(plan, source="floor plan"):
             fail(place, f"a polygon of 3 to {MOST_CORNERS} points", value)
         for point in value:
             numbers(point, 2, place)
+        n_inner = len(inner_corners(np.array(value, float)))
+        if n_inner > MOST_INNER:
+            fail(place, f"a polygon of at most {MOST_INNER} inner corners", n_inner)
 
     def colour(value, place):
         numbers(value, 3, place)
@@ -134,5 +143,5 @@ def check(plan, source="floor plan"):
             fail(key, f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
     farthest = max(abs(number) for end in ends for number in end)
     if farthest > FARTHEST_M:
-        fail("walls", f"a home within {FARTHEST_M:g} m of the origin", farthest)
+        fail("walls", f"a home within {FARTHEST_M:g} m of the origin (move it there)", farthest)
     return plan

@@ -84,6 +84,18 @@ def _check_words(words, n_words):
         raise ValueError(f"words: expected 0..{n_words - 1}, found {words.min()}..{words.max()}")
 
 
+def _check_edges(graphs):
+    """ValueError unless edges are pairs of nodes i < j of one graph, each once."""
+    i, j = graphs.edges.astype(int).reshape(-1, 2).T
+    n = len(graphs.words)
+    good = (i >= 0) & (i < j) & (j < n)
+    good[good] = np.equal(*(np.searchsorted(graphs.starts, ends[good], side="right") for ends in (i, j)))
+    if not good.all():
+        raise ValueError(f"edges: expected nodes i < j of one graph, found {graphs.edges[~good][0]}")
+    if len(np.unique(i * n + j)) < len(i):
+        raise ValueError("edges: expected each pair once, found one twice")
+
+
 class GCN:
     """Parameters and passes of the network; `n_words` and `hidden` as one likes."""
 
@@ -154,19 +166,17 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
 
     graphs : SceneGraphs of n views; places (n,) int; progress(share done, loss) is called after each epoch
     """
-    places, (i, j) = np.asarray(places), graphs.edges.reshape(-1, 2).T
+    places = np.asarray(places)
     _check_words(graphs.words, len(gcn.params["W1"]))
-    graph = np.repeat(np.arange(len(graphs)), np.diff(graphs.starts))
-    once = len(np.unique(i * len(graph) + j)) == len(i)
-    if not once or not (i < j).all() or (graph[i] != graph[j]).any():
-        raise ValueError("edges: expected pairs of nodes i < j of one graph, each once, found others")
+    _check_edges(graphs)
     if places.shape != (len(graphs),) or not len(places) or not np.issubdtype(places.dtype, np.integer):
         raise ValueError(f"places: expected an integer for each of the {len(graphs)} graphs, "
                          f"found {places.dtype} of shape {places.shape}")
     if not 0 <= places.min() <= places.max() < gcn.n_places:
         raise ValueError(f"places: expected 0..{gcn.n_places - 1}, found {places.min()}..{places.max()}")
     if batch < 1 or epochs < 0 or not 0 <= rate < np.inf:
-        raise ValueError(f"batch, epochs, rate: expected at least 1, 0 and 0, found {batch}, {epochs} and {rate}")
+        raise ValueError("batch, epochs, rate: expected at least 1, at least 0 and a finite number from 0 on, "
+                         f"found {batch}, {epochs} and {rate}")
     adam = Adam(gcn.params, rate)
     for epoch in range(epochs):
         order, losses = rng.permutation(len(places)), []

@@ -16,7 +16,7 @@ from .classes import N_CLASSES
 from .files import load_arrays, save_arrays
 from .places import PlaceGrid
 from .ranks import ranks
-from .robot import N_ACTIONS, Robot
+from .robot import Robot, check_actions
 from .scene_graph import join
 from .senses import Senses
 
@@ -177,11 +177,10 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
 
     def load(path):
         arrays, made_by = load_arrays(path)
-        sequence = arrays.get("sequence", np.empty(0))
-        if len(arrays) != 1 or sequence.shape != (episode.LENGTH,) or not np.isin(sequence, range(N_ACTIONS)).all():
-            raise ValueError(f"{path}: expected a sequence of actions 0..{N_ACTIONS - 1}, "
-                             f"found {', '.join(f'{name} {a}' for name, a in arrays.items())}")
-        return sequence, made_by
+        try:
+            return check_actions(arrays["sequence"], episode.LENGTH), made_by
+        except (ValueError, KeyError) as error:
+            raise ValueError(f"{path}: expected a sequence of actions ({error})") from None
 
     return lambda: kept(folder, "scan", settings, load, learn)
 

@@ -23,6 +23,7 @@ from .checkpoints import Checkpoints
 from .files import load_arrays, save_arrays
 from .kdtree import check_count, lengths
 from .rank_index import RankIndex
+from .robot import check_actions
 
 K_NEIGHBOURS, ALPHA, GAMMA = 4, 0.1, 0.9
 SAME = 1e-6  # CHOICE: distance within which a state counts as met before; "quantization error" in the paper
@@ -114,12 +115,13 @@ class NNQL:
         # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
         # several met is changed by one after the other.
         states, next_states = np.asarray(states, np.float32), np.asarray(next_states, np.float32)
-        actions, rewards, done = np.asarray(actions), np.asarray(rewards, float), np.asarray(done, bool)
-        B = len(states)
-        if not (states.shape == next_states.shape and actions.shape == rewards.shape == done.shape == (B,)
-                and np.isin(actions, range(len(self.index))).all() and np.isfinite(rewards).all()):
-            raise ValueError(f"actions, rewards: expected 0..{len(self.index) - 1} and finite numbers, one for each of "
-                             f"{B} states, next states and ends, found {actions}, {rewards}")
+        B, rewards, done = len(states), np.asarray(rewards, float), np.asarray(done, bool)
+        actions = check_actions(actions, B, len(self.index))
+        if states.shape != next_states.shape or not rewards.shape == done.shape == (B,):
+            raise ValueError(f"step: expected one of each for {B} states, found next states {next_states.shape}, "
+                             f"rewards {rewards.shape} and done {done.shape}")
+        if not np.isfinite(rewards).all():
+            raise ValueError(f"rewards: expected finite numbers, found {rewards[~np.isfinite(rewards)][0]}")
         found = self._neighbours(states)
         if done.all():
             ahead, self._states = 0.0, None  # nobody will ask for what comes after
@@ -186,17 +188,17 @@ class NNQL:
             raise ValueError(f"{path}: expected a store of state-action pairs, found {', '.join(sorted(arrays))}")
         for a in range(n_actions):
             states, values = arrays[f"states{a}"], arrays[f"values{a}"]
-            finite = values.dtype == float and np.isfinite(values).all()
-            if states.ndim != 2 or values.shape != (len(states),) or not finite:
+            numbers = np.issubdtype(values.dtype, np.floating)
+            if states.ndim != 2 or values.shape != (len(states),) or not (numbers and np.isfinite(values).all()):
                 raise ValueError(f"{path}: expected states (n, K) and n finite values of action {a}, "
-                                 f"found {states.shape} and {values.shape}")
+                                 f"found {states.shape} and {values.dtype} {values.shape}")
         store = cls(arrays["states0"].shape[1], n_actions, **settings)
         try:
             for a, index in enumerate(store.index):
                 index.add(arrays[f"states{a}"])
             store.values = [arrays[f"values{a}"] for a in range(n_actions)]
             store.log = Checkpoints.from_arrays(arrays, n_actions)
-        except (ValueError, IndexError) as error:
+        except (ValueError, IndexError, TypeError) as error:
             raise ValueError(f"{path}: expected a store of state-action pairs, found another one ({error})") from None
         return store, made_by
 

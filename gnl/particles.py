@@ -11,6 +11,8 @@
 
 import numpy as np
 
+from .ranks import best_first
+
 N_PARTICLES = 5000
 N_START_PLACES = 3
 STD = 0.03, 0.03  # CHOICE: 3 cm and 0.03 rad, as the odometry; the paper names no motion noise
@@ -33,12 +35,14 @@ class ParticleFilter:
         std        : of the motion noise, metres (forward and aside) and radians
         """
         likelihood = np.asarray(likelihood)
-        if min(n_particles, n_start_places) < 1 or likelihood.ndim != 2:
-            raise ValueError(f"particles: expected at least one, in at least one place, and likelihoods (B, K), found "
-                             f"{n_particles}, {n_start_places} and {likelihood.shape}")
+        if likelihood.ndim != 2:
+            raise ValueError(f"likelihood: expected shape (B, K), found {likelihood.shape}")
+        if min(n_particles, n_start_places) < 1:
+            raise ValueError("n_particles, n_start_places: expected at least 1 of each, "
+                             f"found {n_particles} and {n_start_places}")
         B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
         self.grid, self.rng, self.std = grid, rng, std
-        best = np.argsort(-likelihood.astype(float), axis=1, kind="stable")[:, :k]
+        best = best_first(likelihood)[:, :k]
         # Particles of one place lie in one block: were places to alternate (0, 1, 2, 0, 1, 2, ..), systematic
         # resampling, which takes every n-th particle, could take all from one place.
         block = np.arange(M) * k // M
@@ -52,7 +56,8 @@ class ParticleFilter:
         """Move all particles as odometry says, (B, 2) forward [m] and turn [rad], and spread them by its noise."""
         odometry = np.asarray(odometry, np.float32)
         if odometry.shape != (len(self.x), 2) or not np.isfinite(odometry).all():
-            raise ValueError(f"odometry: expected {len(self.x)} x 2 finite numbers, found {odometry}")
+            raise ValueError(f"odometry: expected {len(self.x)} x 2 finite numbers, found shape {odometry.shape}, "
+                             f"{np.isfinite(odometry).sum()} of them finite")
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
         noise *= np.float32([[self.std[0]], [self.std[0]], [self.std[1]]])
         for some in self._groups():

@@ -13,7 +13,7 @@ def cover_polygon(polygon):
     """
     polygon = np.asarray(polygon, float)
     whole = smallest_rectangle(polygon)
-    cuts = [cut for cut in (_cut(polygon, i) for i in _inner_corners(polygon)) if cut]
+    cuts = [cut for cut in (_cut(polygon, i) for i in inner_corners(polygon)) if cut]
     if not cuts:
         return [whole]
     best = min(cuts, key=lambda pieces: sum(_area(smallest_rectangle(piece)) for piece in pieces))
@@ -43,7 +43,7 @@ def _cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def _inner_corners(polygon):
+def inner_corners(polygon):
     """Indices of the corners that turn against the polygon's sense of rotation."""
     before, after = polygon - np.roll(polygon, 1, 0), np.roll(polygon, -1, 0) - polygon
     turning = _cross(before, after)

@@ -9,16 +9,21 @@ third 1/3: large where the classifier is confident, nearly zero for the many pla
 import numpy as np
 
 
-def ranks(scores):
-    """Rank of each score, 1 the best; equal scores rank in the order of their places: (B, K) -> (B, K) int."""
+def best_first(scores):
+    """Places in the order of their scores, the greatest first, equal ones in the order of places: (B, K) -> (B, K)."""
     scores = np.asarray(scores)
     if not np.issubdtype(scores.dtype, np.floating):
         scores = scores.astype(float)  # the negative of an unsigned number is none
     if np.isnan(scores).any():
         raise ValueError(f"scores: expected numbers, found {np.isnan(scores).sum()} NaN")
-    order = np.argsort(-scores, axis=-1, kind="stable")
+    return np.argsort(-scores, axis=-1, kind="stable")
+
+
+def ranks(scores):
+    """Rank of each score, 1 the best; equal scores rank in the order of their places: (B, K) -> (B, K) int."""
+    order = best_first(scores)
     rank = np.empty_like(order)
-    np.put_along_axis(rank, order, np.arange(1, scores.shape[-1] + 1), -1)
+    np.put_along_axis(rank, order, np.arange(1, order.shape[-1] + 1), -1)
     return rank
 
 

@@ -11,6 +11,7 @@ from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, load_cell
 from .files import load_json, write_whole
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
+from .table import check_settings, path_of
 from .terminal import Stage
 
 SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
@@ -56,10 +57,7 @@ def load(out):
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
     for result, _ in cells:
-        if result.get("settings") != settings:
-            name = Cell(**result["cell"]).name
-            raise ValueError(f"{Path(out) / 'cells' / name}.json: expected results of the settings in settings.json, "
-                             f"found some of {result.get('settings')}")
+        check_settings(path_of(out, Cell(**result["cell"]).name), result.get("settings") or {}, settings)
     return *map(list, zip(*cells, strict=True)), settings
 
 

@@ -49,9 +49,8 @@ class Robot:
 
         Each robot moves exactly as asked or until it touches; odometry errs by `motion.std_m` and `std_rad`.
         """
-        poses, actions, m = check_poses(poses).copy(), np.asarray(actions), self.motion
-        if actions.shape != (len(poses),) or not np.isin(actions, range(N_ACTIONS)).all():
-            raise ValueError(f"actions: expected {len(poses)} of 0..{N_ACTIONS - 1}, found {actions}")
+        poses, m = check_poses(poses).copy(), self.motion
+        actions = check_actions(actions, len(poses))
         turn = np.choose(actions, [m.turn_rad, -m.turn_rad, 0.0])
         forward = np.where(actions == FORWARD, m.forward_m, 0.0)
         bumped = np.zeros(len(poses), bool)
@@ -72,3 +71,12 @@ class Robot:
         if hit is None:
             return distance_m, False
         return max(0.0, hit.alpha * reach - SKIN_M), True
+
+
+def check_actions(actions, n, n_actions=N_ACTIONS):
+    """The actions as ints 0 .. n_actions - 1, (n,); ValueError if they are none."""
+    actions = np.asarray(actions)
+    if actions.shape != (n,) or not np.isin(actions, range(n_actions)).all():
+        raise ValueError(f"actions: expected {n} whole numbers 0..{n_actions - 1}, "
+                         f"found {np.atleast_1d(actions)[:9]} of shape {actions.shape}")
+    return actions.astype(int)

@@ -31,7 +31,7 @@ class SceneGraphs:
     """The graphs of B views, one behind the other; a batch of one is a graph.
 
     By hand, three nodes in a row: SceneGraphs(words, boxes, np.array([[0, 1], [1, 2]]), np.array([0, 3]),
-    np.array([0, 2])); a GCN does not look at boxes.
+    np.array([0, 2])); boxes may hold anything, (N, 4): a GCN does not look at them.
     """
 
     words: np.ndarray  # (N,) int
@@ -44,12 +44,12 @@ class SceneGraphs:
         return len(self.starts) - 1
 
     def __getitem__(self, index):
-        """Graph `index` alone, or those of a slice."""
+        """Graph `index` alone, or those of a slice or a mask."""
         return self.pick(np.atleast_1d(np.arange(len(self))[index]))
 
     def pick(self, chosen):
         """The graphs `chosen`, in that order: numbers (n,), repeats allowed, or a mask (B,)."""
-        chosen = np.arange(len(self))[chosen]
+        chosen = np.arange(len(self))[list(chosen)]  # a tuple would index dimensions, an empty array has floats
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
         edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
         shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))

@@ -71,9 +71,10 @@ def forward(params, rgb, learning=True):
     rgb (B, 64, 64, 3) uint8 -> (10 classes, 4 pixels of a quad, B, 16, 16, 4 quads of a square)
     learning : if not, no cache is kept, which would cost room near the processor
     """
-    cache, (H, W) = {}, rgb.shape[1:3]
-    if H % (part := 4 * max(GRIDS)) or W % part:  # squares of 4 pixels, and cells of squares
-        raise ValueError(f"views: expected a height and a width that {part} parts, found {H} x {W}")
+    (H, W), part = rgb.shape[1:3], 4 * max(GRIDS)  # squares of 4 x 4 pixels, as many a side as the finest grid
+    if H % part or W % part:
+        raise ValueError(f"views: expected a height and a width that are multiples of {part}, found {H} x {W}")
+    cache = {}
 
     def keep(name, out_and_cache):
         out, of_layer = out_and_cache

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import learned
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, run_cell, to_bytes
-from .files import load_arrays, load_json, write_whole
+from .files import check_folder, load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
 from .paper import WORLDS
 from .photo import check_noise
@@ -64,6 +64,7 @@ def run(args):
     """Run the cells that are not finished yet."""
     settings, cells = check(args)
     out = Path(args.out)
+    check_folder("--out", out)
     agree(out, asdict(settings))
     todo = [cell for cell in cells if not finished(out, cell.name, load_cell, asdict(settings))]
     write_whole(out / "settings.json", to_bytes(asdict(settings)))
@@ -212,14 +213,16 @@ def load_starts(out, cell, settings):
     """A cell's start poses; ValueError if they are not as many as the settings say."""
     starts, _ = load_arrays(path := starts_of(out, cell))
     sizes = {"training": settings.episodes, "tests": settings.tests, "validation": settings.validation}
-    found = {name: poses.shape for name, poses in starts.items()}
-    if found != {name: (n, 3) for name, n in sizes.items()} or not all(np.isfinite(p).all() for p in starts.values()):
-        raise ValueError(f"{path}: expected start poses {sizes}, found {found}, or some that are no numbers")
+    wanted, found = ({name: (n, 3) for name, n in sizes.items()}, {name: poses.shape for name, poses in starts.items()})
+    if found != wanted:
+        raise ValueError(f"{path}: expected start poses {wanted}, found {found}")
+    if not all(np.isfinite(poses).all() for poses in starts.values()):
+        raise ValueError(f"{path}: expected start poses of finite numbers, found others")
     return starts
 
 
 def _load_home(path, seed):
-    """The procedural home of a seed; ValueError if it is another one."""
+    """The procedural home of a seed; ValueError if it has the name of another one."""
     home = World.load(path)
     if home.name != f"home-{seed}":
         raise ValueError(f"{path}: expected home-{seed}, found {home.name}")

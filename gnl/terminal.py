@@ -120,7 +120,7 @@ def guarded(program, run, *args):
     except BrokenPipeError:  # who reads the output has read enough: `... | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(128 + signal.SIGPIPE)
-    except (ValueError, OSError, RecursionError) as error:  # JSON may be nested deeper than Python goes
+    except (ValueError, OSError) as error:
         status, line = 2, str(error).replace("\n", " ")
     except BrokenExecutor:
         status, line = 1, "a process beside this one was ended from outside; what was finished is kept"

@@ -150,9 +150,9 @@ class World:
 
 
 def _points(xy):
-    """Points as floats (n, 2), or one (2,); ValueError if they are none."""
+    """Points as floats (n, 2); ValueError if they are none."""
     xy = np.asarray(xy, float)
-    if xy.ndim not in (1, 2) or xy.shape[-1] != 2:
+    if xy.size and xy.shape[-1:] != (2,):
         raise ValueError(f"xy: expected shape (n, 2), found {xy.shape}")
     return xy.reshape(-1, 2)
 

@@ -315,7 +315,7 @@ def unlike_views(path):
     save_arrays(path, {}, rgb=np.zeros((8, 64, 64, 3), np.uint8), labels=np.zeros((7, 64, 64), np.uint8))
 
 
-def views_of_many_homes(path):
+def views_of_homes_in_words(path):
     rgb = np.zeros((8, 64, 64, 3), np.uint8)
     save_arrays(path, {"homes": "forty"}, rgb=rgb, labels=rgb[..., 0])
 
@@ -370,7 +370,7 @@ def test_a_home_that_the_net_learns_from_is_refused(views, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views,
-                                  views_of_many_homes, views_of_eleven_classes], ids=lambda make: make.__name__)
+                                  views_of_homes_in_words, views_of_eleven_classes], ids=lambda make: make.__name__)
 def test_views_that_are_none_are_named(tmp_path, capsys, make):
     make(tmp_path / "views")
     assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "views", "--out", tmp_path / "out"],

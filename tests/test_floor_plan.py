@@ -49,13 +49,15 @@ FAULTS = [
     (["doors", 0, "state"], True, 'doors[0].state: expected "open" or "closed"'),
     (["rooms"], "bedroom", "rooms: expected a list"),
     (["rooms", 0], "bedroom", "rooms[0]: expected an object"),
-    (["rooms", 0, "polygon"], [[0, 0], [5, 0]], "rooms[0].polygon: expected a polygon of 3 to 100 points"),
+    (["rooms", 0, "polygon"], [[0, 0], [5, 0]], "rooms[0].polygon: expected a polygon of 3 to 400 points"),
     (["rooms", 0, "polygon", 1, 1], 1e8, "rooms: expected a home of at most 200 m"),
     (["objects"], None, "objects: expected a list"),
     (["objects", 0], 3, "objects[0]: expected an object"),
-    (["objects", 0, "polygon"], ..., "objects[0].polygon: expected a polygon of 3 to 100 points"),
-    (["objects", 0, "polygon"], [[1, 1], [2, 1]], "objects[0].polygon: expected a polygon of 3 to 100 points"),
-    (["objects", 0, "polygon"], [[1, 1], [2, 1]] * 51, "objects[0].polygon: expected a polygon of 3 to 100 points"),
+    (["objects", 0, "polygon"], ..., "objects[0].polygon: expected a polygon of 3 to 400 points"),
+    (["objects", 0, "polygon"], [[1, 1], [2, 1]], "objects[0].polygon: expected a polygon of 3 to 400 points"),
+    (["objects", 0, "polygon"], [[1, 1], [2, 1]] * 201, "objects[0].polygon: expected a polygon of 3 to 400 points"),
+    (["objects", 0, "polygon"], [[i, i % 2] for i in range(104)] + [[103, 9], [0, 9]],
+     "objects[0].polygon: expected a polygon of at most 50 inner corners"),
     (["objects", 0, "polygon", 1], [1, 2, 3], "objects[0].polygon: expected a list of 2 numbers"),
     (["objects", 0, "polygon", 1, 0], None, "objects[0].polygon: expected a number"),
     (["objects", 0, "polygon", 1, 0], 1e300, "objects[0].polygon: expected a number"),
@@ -135,7 +137,8 @@ def test_no_file_and_a_folder_are_refused_by_name(tmp_path):
 def test_a_home_too_far_from_the_origin_for_particles_of_32_bits_is_refused():
     far = {**GOOD, "rooms": [], "walls": [[9_990, 0, 9_995, 0], [9_995, 0, 10_000, 5]]}
     assert floor_plan.check(far) == far
-    with pytest.raises(ValueError, match=r"walls: expected a home within 10000 m of the origin, found 10000\.5"):
+    words = r"walls: expected a home within 10000 m of the origin \(move it there\), found 10000\.5"
+    with pytest.raises(ValueError, match=words):
         floor_plan.check({**far, "walls": [*far["walls"], [9_990, 0, 10_000.5, 0]]})
 
 

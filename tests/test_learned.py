@@ -198,6 +198,15 @@ def test_what_is_seen_from_a_pose_is_learnt_as_the_place_of_that_pose(parts, mon
     assert helper.given == helped
 
 
+def test_one_view_alone_needs_no_helper(parts):
+    def nobody(*_):
+        raise AssertionError("asked for help")
+
+    senses, grid = parts[0], PlaceGrid(parts[0].world)
+    helper = SimpleNamespace(submit=nobody)
+    assert learned.learn_places(senses, grid, 1, 0, helper, epochs=1).n_places == grid.n_places
+
+
 def test_quick_senses_look_by_true_labels_and_know_their_home_in_64_bits(parts):
     world = parts[0].world
     senses, others = learned.quick_senses(world, 300), learned.quick_senses(world, 300, seed=1)
@@ -299,5 +308,6 @@ def test_a_sequence_of_no_actions_is_refused(monkeypatch, tmp_path, sequence):
     monkeypatch.setattr(learned, "kept", lambda folder, name, settings, load, learn: load)
     save_arrays(tmp_path / "scan.npz", {}, sequence=np.array(sequence))
     load = get(learned.fixed_scan, tmp_path, **WAYS[learned.fixed_scan])
-    with pytest.raises(ValueError, match=r"scan\.npz: expected a sequence of actions 0\.\.2, found sequence "):
+    words = r"scan\.npz: expected a sequence of actions \(actions: expected 4 whole numbers 0\.\.2, found "
+    with pytest.raises(ValueError, match=words):
         load(tmp_path / "scan.npz")

@@ -7,6 +7,7 @@ import naive_learning
 import numpy as np
 import pytest
 
+from gnl.checkpoints import Checkpoints
 from gnl.files import load_arrays, save_arrays
 from gnl.kdtree import KDTree
 from gnl.nnql import ALPHA, GAMMA, NNQL, epsilon
@@ -186,34 +187,46 @@ def test_epsilon_is_that_of_the_paper():
     np.testing.assert_allclose(epsilon(np.array([0, 9, 99, 9999])), [1 / 1.1, 1 / 2, 1 / 11, 1 / 1001])
 
 
-@pytest.mark.parametrize(("actions", "rewards"), [([0, A], [1.0, 1.0]), ([0, -1], [1.0, 1.0]), ([0, 1], [1.0, np.nan]),
-                                                  ([0], [1.0, 1.0]), ([0, 1, 1], [1.0, 1.0]), ([0, 1], 1.0), ([], [])])
-def test_steps_that_cannot_be_are_refused_and_change_nothing(actions, rewards):
+@pytest.mark.parametrize(("actions", "rewards", "words"), [
+    ([0, A], [1.0, 1.0], r"actions: expected 2 whole numbers 0\.\.2, found \[0 3\]"),
+    ([0, -1], [1.0, 1.0], "actions: "), ([0.5, 1.0], [1.0, 1.0], "actions: "), ([0], [1.0, 1.0], "actions: "),
+    ([0, 1, 1], [1.0, 1.0], "actions: "),
+    ([], [], "actions: "), ([0, 1], [1.0, np.nan], "rewards: expected finite numbers, found nan"),
+    ([0, 1], 1.0, r"step: expected one of each for 2 states, found .* rewards \(\)")], ids=str)
+def test_steps_that_cannot_be_are_refused_and_change_nothing(actions, rewards, words):
     store, states = lived(5), random_states(np.random.default_rng(0), 2)
     before = [values.copy() for values in store.values]
-    with pytest.raises(ValueError, match=r"actions, rewards: expected 0\.\.2 and finite numbers, one for each of 2 "):
+    with pytest.raises(ValueError, match=words):
         store.learn(states, np.array(actions), np.array(rewards), states, np.zeros(2, bool))
+    for next_states, done in ((states[:1], np.zeros(2, bool)), (states, np.zeros(3, bool))):
+        with pytest.raises(ValueError, match="step: expected one of each for 2 states, found next states "):
+            store.learn(states, np.array([0, 1]), np.ones(2), next_states, done)
     for values, then in zip(store.values, before, strict=True):
         np.testing.assert_array_equal(values, then)
 
 
-@pytest.mark.parametrize("change", [{"values1": np.zeros(2)}, {"values0": "nan"}, {"states2": np.zeros(K, np.float32)}],
+@pytest.mark.parametrize("change", [{"values1": np.zeros(2)}, {"values0": "nan"}, {"values2": "text"},
+                                    {"states2": np.zeros(K, np.float32)}],
                          ids=lambda change: next(iter(change)))
 def test_a_file_that_is_no_store_is_refused(tmp_path, change):
     path, store = tmp_path / "store.npz", lived(5)
     store.save(path, "a test")
     arrays, _ = load_arrays(path)
-    change = {name: np.full_like(arrays[name], np.nan) if isinstance(a, str) else a for name, a in change.items()}
+    of = {"nan": lambda a: np.full_like(a, np.nan), "text": lambda a: a.astype(str)}
+    change = {name: of[a](arrays[name]) if isinstance(a, str) else a for name, a in change.items()}
     save_arrays(path, "a test", **arrays | change)
     with pytest.raises(ValueError, match=r"store\.npz: expected states \(n, K\) and n finite values of action \d"):
         NNQL.load(path)
 
 
 @pytest.mark.parametrize("change", [{"states0": np.ones((9, K), np.float32)}, {"changed1": np.zeros(1, int)},
-                                    {"born2": np.zeros(0, int)}], ids=lambda change: next(iter(change)))
+                                    {"born2": np.zeros(0, int)}, {"n_changed0": np.full(2, 0.5)}, {"born0": 3}],
+                         ids=lambda change: next(iter(change)))
 def test_a_store_that_does_not_fit_together_is_refused_by_name(tmp_path, change):
     path, store = tmp_path / "store.npz", lived(5)
-    store.checkpoint()
+    store.log = Checkpoints(A)
+    for _ in range(2):
+        store.checkpoint()
     store.save(path, "a test")
     arrays, _ = load_arrays(path)
     if "states0" in change:

@@ -36,6 +36,12 @@ def test_strings_and_arrays_are_each_others_inverse():
     np.testing.assert_array_equal(arrays(strings(there)), there)
 
 
+@pytest.mark.parametrize("looks", [["01", "0"], ["0x"], ["01", "1 "]], ids=str)
+def test_looks_that_are_no_strings_of_right_and_wrong_are_refused(looks):
+    with pytest.raises(ValueError, match="looks that are no strings of 0 and 1, all equally long"):
+        arrays(looks)
+
+
 @pytest.mark.parametrize(("values", "best"), [([1, 3, 2], 1), ([3, 1, 3], 2), ([2, 2, 2], 2), ([5], 0)])
 def test_of_equal_checkpoints_the_latest_is_taken(values, best):
     assert latest_best(values) == best

@@ -335,7 +335,7 @@ def test_cells_of_other_settings_are_not_mixed(folder, tmp_path, capsys):
         main(["report", "--out", str(tmp_path / "one")])
     assert exit.value.code == 2
     err = capsys.readouterr().err
-    assert f"{path}: expected results of the settings in settings.json, found some of " in err
+    assert f"{path}: expected results of episodes 10000, found some of 320; name another folder" in err
     assert err.count("\n") == 1
 
 

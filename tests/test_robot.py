@@ -149,8 +149,15 @@ def test_poses_that_are_none_are_refused(home):
 
 @pytest.mark.parametrize("actions", [0, [0], [0, 3], [0, -1], [0.5, 1], [[0, 1]]], ids=str)
 def test_actions_that_are_none_are_refused(home, actions):
-    with pytest.raises(ValueError, match=rf"actions: expected 2 of 0\.\.{N_ACTIONS - 1}, found "):
+    with pytest.raises(ValueError, match=rf"actions: expected 2 whole numbers 0\.\.{N_ACTIONS - 1}, found "):
         Robot(home).step(home.free_poses(2, rng()), actions, rng())
+
+
+def test_actions_may_be_any_kind_of_numbers(home):
+    start = home.free_poses(2, rng())
+    for actions in ([2, 1], [2.0, 1.0], np.array([2, 1], np.uint8)):
+        np.testing.assert_array_equal(Robot(home).step(start, actions, rng())[0],
+                                      Robot(home).step(start, np.array([2, 1]), rng())[0])
 
 
 def test_many_robots_move_as_each_would_alone(home):

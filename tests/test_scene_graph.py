@@ -249,7 +249,7 @@ def test_a_batch_is_its_views_one_by_one():
         graphs[len(views)]
 
 
-@pytest.mark.parametrize("chosen", [[3], [8, 2, 2, 0, 5], [2], list(range(9)), [0, 0, 0], []], ids=str)
+@pytest.mark.parametrize("chosen", [[3], [8, 2, 2, 0, 5], [2], range(9), (0, 0, 0), [], np.array([])], ids=str)
 def test_picked_graphs_are_those_of_the_picked_views(chosen):
     views = batch_of_views()
     assert equal(scene_graph(views).pick(chosen), scene_graph(views[np.array(chosen, int)]))

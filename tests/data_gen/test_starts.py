@@ -191,7 +191,7 @@ def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
         main(["starts", str(tmp_path / "out"), "--cell", *words.split()])
     assert exit.value.code == 2
     assert capsys.readouterr().err == ("python -m data_gen: --cell: expected WORLD M DEG SEED as in 800 0.2 10 0, "
-                                       f"found {words}\n")
+                                       f"M of at most six digits, found {words}\n")
     assert not list(tmp_path.iterdir())
 
 
