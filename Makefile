@@ -23,14 +23,18 @@ CHAPTERS ?=
 VIEWS := out/data/views-$(NOISE).npz
 HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
-.PHONY: help demo test lint table tutorials figures bench clean
+PYTEST := $(RUN) -m pytest -n auto --dist loadfile --no-loadscope-reorder
+LONG := tests/test_demo.py tests/test_table.py tests/test_tutorials.py
+
+.PHONY: help demo test test-long lint table tutorials figures bench clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo    learn every stage in a home and let a robot find out where it is (out/demo)"
 	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1 HOUSE=800 (from 40 on) ALIASING=0.3"
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
-	@echo "make test    run the tests"
+	@echo "make test    run the tests, but for the long ones"
+	@echo "make test-long   run those: demo and tables from end to end, killed and begun again; all chapters"
 	@echo "make lint    check the style of the code"
 	@echo "make table   the paper's experiment at full scale, then its report (out/table; three quarters of an hour)"
 	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); TABLE=folder; more with  $(RUN) -m gnl table --help"
@@ -49,8 +53,11 @@ table: .venv/ready
 	@$(RUN) -m gnl table --out "$(TABLE)" $(ARGS)
 	@$(RUN) -m gnl report --out "$(TABLE)"
 
-test: .venv/cluster
-	@$(RUN) -m pytest -n auto --dist loadfile --no-loadscope-reorder
+test: .venv/ready
+	@$(PYTEST) $(LONG:%=--ignore=%)
+
+test-long: .venv/cluster
+	@$(PYTEST) $(LONG)
 
 lint: .venv/ready
 	@$(RUN) -m ruff check .
