@@ -273,7 +273,8 @@ def test_a_second_report_is_the_same(folder, tmp_path):
 
 
 @pytest.mark.parametrize("damage", [b"", b"{}", b"[1, 2]", b'{"cell": 3', b'{"cell": {"world": 800}, "tests": {}}',
-                                    b'{"checkpoints": [{"place": [1, 2]}], "tests": {}}'])
+                                    b'{"checkpoints": [{"place": [1, 2]}], "tests": {}}', b"[" * 100_000],
+                         ids=lambda damage: damage[:20].decode())
 def test_a_damaged_cell_is_named(tmp_path, capsys, damage):
     path = tmp_path / "cells" / "800-1m-90deg-seed0.json"
     for file, data in ((path, damage), (tmp_path / "costs" / path.name, b"{}"), (tmp_path / "settings.json", b"{}")):

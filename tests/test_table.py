@@ -168,7 +168,8 @@ def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, done, capsy
 
 @pytest.mark.parametrize(("kind", "change"), [
     ("cells", {"checkpoints": []}), ("cells", {"tests": {}}), ("cells", {"from training starts": {}}),
-    ("cells", {"cell": {"world": "800", "t_xy_m": 1, "t_theta_deg": 90, "seed": 0}}), ("costs", {"versions": []}),
+    ("cells", {"cell": {"world": "800", "t_xy_m": 1, "t_theta_deg": 90, "seed": 0}}),
+    ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": "90", "seed": 0}}), ("costs", {"versions": []}),
     ("costs", {"machine": 5}), ("cells", {"validation": None}),
     ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": 70, "seed": 0}}), ("cells", {"cell": "800"}),
     ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}), ("costs", {"versions": 3}), ("costs", {"views": 0})])
