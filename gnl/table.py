@@ -212,8 +212,8 @@ def starts_of(out, cell):
 def load_starts(out, cell, settings):
     """A cell's start poses; ValueError if they are not as many as the settings say."""
     starts, _ = load_arrays(path := starts_of(out, cell))
-    sizes = {"training": settings.episodes, "tests": settings.tests, "validation": settings.validation}
-    wanted, found = ({name: (n, 3) for name, n in sizes.items()}, {name: poses.shape for name, poses in starts.items()})
+    wanted = {"training": (settings.episodes, 3), "tests": (settings.tests, 3), "validation": (settings.validation, 3)}
+    found = {name: poses.shape for name, poses in starts.items()}
     if found != wanted:
         raise ValueError(f"{path}: expected start poses {wanted}, found {found}")
     if not all(np.isfinite(poses).all() for poses in starts.values()):
