@@ -113,13 +113,12 @@ def _pile(world, strip, size):
     # A top belongs right behind its front; but what stands on it comes between the two.
     nearness = np.append(w, np.where(world.carries.take(capped_box), w_back, w_front))
 
-    # Sorting numbers of which the last digits are the place in the list is faster than asking for the order.
-    far, bits = ((1 - nearness * NEAREST_M) * 2 ** 30).astype(int), len(ray).bit_length()
-    number = (((ray << 31) + far) << bits) + np.arange(len(ray))
-    number = np.sort(number.take(np.flatnonzero(end > begin)))
-    shown = number & ((1 << bits) - 1)
+    # Ray by ray, near to far. Each face comes with its rays in order: what merges such runs sorts fastest.
+    shown = np.flatnonzero(end > begin)
+    far = ((1 - nearness.take(shown) * NEAREST_M) * 2 ** 30).astype(int)
+    shown = shown.take(((ray.take(shown) << 31) + far).argsort(kind="stable"))
     w = np.append(w, np.zeros(len(capped)))
-    return number >> (31 + bits), face.take(shown), w.take(shown), begin.take(shown), end.take(shown)
+    return ray.take(shown), face.take(shown), w.take(shown), begin.take(shown), end.take(shown)
 
 
 def _visible(pile, n_rays, size, n_boxes):
@@ -143,7 +142,8 @@ def _visible(pile, n_rays, size, n_boxes):
     # An edge is a number: its last six digits are the bit, the others the pixel. Short numbers are sorted faster.
     short = np.int32 if n_rays * H < 1 << 25 else np.int64
     start, top = ((ray * H << 6) + bit).astype(short), ((np.arange(n_rays + 1) * H << 6) + NO_SURFACE).astype(short)
-    edge = np.sort(np.concatenate([start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)]))
+    edges = start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)
+    edge = np.sort(np.concatenate(edges), kind="stable")  # each of the four nearly is in order: they are merged
     on = np.bitwise_xor.accumulate(np.uint64(1) << (edge & 63).astype(np.uint64))
     pixel = edge >> 6
     run = np.flatnonzero(pixel[1:] != pixel[:-1])

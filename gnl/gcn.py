@@ -32,7 +32,7 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     # CHOICE: sums over neighbours are normalised; the group's code of 2021 sums plainly.
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
-    rows, columns = np.divmod(np.sort(rows * n_nodes + columns), n_nodes)  # row by row
+    rows, columns = np.divmod(np.sort(rows * n_nodes + columns, kind="stable"), n_nodes)  # row by row
     degree = np.bincount(rows, minlength=n_nodes)
     scale = (1 / np.sqrt(degree)).astype(dtype)
     return sparse(scale[rows] * scale[columns], columns, np.append(0, degree.cumsum()), n_nodes)

@@ -22,7 +22,7 @@ import numpy as np
 from .kdtree import as_points, check_count, check_points, lengths
 
 # Any choice gives the same answers.
-SMALL = 4000  # rows; up to so many stay on the heap, where it is fastest to look at every one
+SMALL = 2000  # rows; up to so many stay on the heap, where it is fastest to look at every one
 HEAP = 500  # rows; so many go to the shelves together
 DEEP = 8  # shelves; a query that is unsure after so many looks at every row
 

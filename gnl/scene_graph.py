@@ -125,10 +125,8 @@ def regions(labels):
     links = sparse(np.ones(len(same)), right[same], ends, n)
     region = connected_components(links, directed=False)[1]  # numbered in the order of their first runs
 
-    # Region by region: it is faster to sort numbers whose last digits are the index than to ask for the order.
-    order = np.sort((region.astype(int) << 32) + np.arange(n))
-    region, order = order >> 32, order & (1 << 32) - 1
-    cut = np.flatnonzero(np.diff(region, prepend=-1))
+    order = region.argsort(kind="stable")  # region by region
+    cut = np.flatnonzero(np.diff(region[order], prepend=-1))
     x, y0, y1 = (column % W)[order], y0[order], (y0 + end - begin)[order]
     low, high, total = np.minimum.reduceat, np.maximum.reduceat, np.add.reduceat
     boxes = np.stack([x[cut], low(y0, cut), high(x, cut) + 1, high(y1, cut)], 1)
