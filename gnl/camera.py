@@ -19,6 +19,7 @@ from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
 RAYS_AT_ONCE = 4096  # as many as stay near the processor; twice as many where no photograph needs the room
+A_LITTLE = 1e-6  # 1/m
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
 NO_SURFACE = 63  # bit of the edges of no surface; where no bit is on, the lowest that is on counts as this one
 
@@ -96,11 +97,12 @@ def row_of(z, w, size):
 def _pile(world, strip, size):
     """Surfaces of each ray, near to far: (ray, face, w, first row, end row), those without a pixel left out."""
     box, w = strip.face // FACES, strip.w_in
-    low, high = world.z.T
-    from_above, from_below = high < HEIGHT_M, low > HEIGHT_M
+    low, high = world.z.T.clip(None, world.wall_height)  # what is taller than the walls ends at the ceiling
+    from_above, from_below = high < HEIGHT_M, (low > HEIGHT_M) & (low < world.wall_height)
     level, flat = np.where(from_above, high, low), np.where(from_above, TOP, UNDERSIDE)
     capped = np.flatnonzero((from_above | from_below).take(box))  # crossings that show a top or an underside, too
-    capped_box, w_front, w_back = box.take(capped), w.take(capped), strip.w_out(capped)
+    capped_box, w_front = box.take(capped), w.take(capped)
+    w_back = np.maximum(strip.w_out(capped), strip.w_wall.take(strip.ray.take(capped)))  # no farther than the wall
     which = np.append(box, len(low) + capped_box)  # where the two heights of each surface stand in a list
     ray = np.append(strip.ray, strip.ray.take(capped))
     face = np.append(strip.face, capped_box * FACES + flat.take(capped_box))
@@ -110,8 +112,9 @@ def _pile(world, strip, size):
 
     front, back = row(np.append(high, level), np.append(w, w_front)), row(np.append(low, level), np.append(w, w_back))
     begin, end = np.minimum(front, back), np.maximum(front, back)
-    # A top belongs right behind its front; but what stands on it comes between the two.
-    nearness = np.append(w, np.where(world.carries.take(capped_box), w_back, w_front))
+    # A top belongs right behind its front; but what stands on it comes between the two. What begins where the top ends,
+    # a wall or the next piece of furniture, comes behind it.
+    nearness = np.append(w, np.where(world.carries.take(capped_box), w_back + A_LITTLE, w_front))
 
     # Ray by ray, near to far. Each face comes with its rays in order: what merges such runs sorts fastest.
     shown = np.flatnonzero(end > begin)

@@ -20,7 +20,7 @@ import numpy as np
 from .files import write_whole
 from .polygons import inner_corners
 
-WALL_HEIGHT_M = 2.5
+WALL_HEIGHT_M, LOWEST_WALL_M = 2.5, 1.35  # no lower than the robot
 DOOR_HEIGHT_M = 2.0
 LARGEST_HOME_M = 200.0
 FARTHEST_M = 10_000.0  # from the origin: farther off, 32 bits hold a particle's place to no better than a millimetre
@@ -108,7 +108,7 @@ def check(plan, source="floor plan"):
         fail("top level", "an object", plan)
     if plan.get("units", "m") != "m":
         fail("units", '"m"', plan["units"])
-    number(plan.get("wall_height", WALL_HEIGHT_M), "wall_height", at_least=0.1)
+    number(plan.get("wall_height", WALL_HEIGHT_M), "wall_height", at_least=LOWEST_WALL_M)
     walls = plan.get("walls")
     if not isinstance(walls, list) or not walls:
         fail("walls", "a list of at least one wall", walls)

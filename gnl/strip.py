@@ -37,6 +37,7 @@ class Strip:
     seen: np.ndarray  # (P,) int, which of the boxes in view it is
     exits: np.ndarray  # (4, 2, V) lines (a, b) by one of which a ray leaves the box
     slope: np.ndarray  # (B * C,) of each ray
+    w_wall: np.ndarray  # (B * C,) where each ray enters its nearest full-height wall; 0 where there is none
 
     def w_out(self, chosen=slice(None)):
         """Inverse depth where the rays of chosen crossings leave their boxes; few users need all of it."""
@@ -102,13 +103,13 @@ def cast(world, poses, n_columns=512):
         w_in[near_by] = np.where(w_out < 1 / NEAREST_M, 1 / NEAREST_M, -1)  # -1: cut off from front to back
 
     n_wall = count[:len(walls)].sum()
-    horizon = np.zeros(B * C)  # the nearest full-height wall on each ray
-    np.maximum.at(horizon, ray[:n_wall], w_in[:n_wall])
-    kept = np.flatnonzero(w_in >= horizon.take(ray))
+    w_wall = np.zeros(B * C)
+    np.maximum.at(w_wall, ray[:n_wall], w_in[:n_wall])
+    kept = np.flatnonzero(w_in >= w_wall.take(ray))
     owner = owner.take(kept)
     side = np.where(face < V, 0, 1) + 2 * away.take(face)  # axes turned away from the camera: their sides look at it
     face = box.take(seen) * FACES + side
-    return Strip(B, C, ray.take(kept), w_in.take(kept), face.take(owner), seen.take(owner), exits, slope)
+    return Strip(B, C, ray.take(kept), w_in.take(kept), face.take(owner), seen.take(owner), exits, slope, w_wall)
 
 
 def _boxes_in_view(world, poses):
