@@ -39,6 +39,21 @@ def test_the_store_at_a_checkpoint_is_a_snapshot_taken_then(index):
     np.testing.assert_array_equal(store.q_values(asked), now)
 
 
+@INDEXES
+def test_values_that_change_while_no_pair_is_born_are_in_the_next_checkpoint(index):
+    store, step = NNQL(K, A, index=index), next(transitions(0, 1))
+    kept = []
+    for _ in range(3):
+        store.learn(*step)
+        store.checkpoint()
+        kept.append([values.copy() for values in store.values])
+    for i, snapshot in enumerate(kept):
+        assert [len(values) for values in snapshot] == [len(values) for values in kept[0]]
+        for ours, then in zip(store.at(i).values, snapshot, strict=True):
+            np.testing.assert_array_equal(ours, then)
+    assert np.concatenate(kept[0]).tolist() != np.concatenate(kept[1]).tolist()
+
+
 def test_the_past_does_not_change_as_the_present_learns():
     store = lived(3)
     store.checkpoint()

@@ -187,6 +187,23 @@ def test_the_likelihood_is_a_probability_and_a_floor_below_it():
     np.testing.assert_allclose(found, [[1e-3, 1e-3, 1e-3, 1.001]], rtol=1e-6)
 
 
+def test_particles_are_drawn_anew_then_moved_then_weighed_after_every_action():
+    calls = []
+
+    class Watched(ParticleFilter):
+        def resample(self):
+            calls.append("drawn anew")
+            super().resample()
+
+        def predict(self, odometry):
+            calls.append("moved")
+            super().predict(odometry)
+
+    run(Sense(knows), Glide(), GRID, planners.chance, starts(3), 0, Rules(filter=Watched),
+        watch=lambda step, **_: calls.append(step))
+    assert calls == [0, *(call for step in range(1, 5) for call in ("drawn anew", "moved", step))]
+
+
 def test_the_answer_remembers_earlier_views():
     """Only the first view tells anything; odometry carries what it told."""
     first = []

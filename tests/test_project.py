@@ -10,7 +10,16 @@ from pathlib import Path
 import pytest
 
 from data_gen.views import MODULES as MODULES_OF_VIEWS
+from gnl import camera
+from gnl.classes import N_CLASSES
+from gnl.episode import LENGTH
+from gnl.experiment import N_CHECKPOINTS
 from gnl.learned import STAGES
+from gnl.nnql import ALPHA, GAMMA, K_NEIGHBOURS
+from gnl.particles import N_PARTICLES, N_START_PLACES
+from gnl.places import CELL_M, N_BEARINGS
+from gnl.scene_graph import FARTHEST_EDGE_PX, N_WORDS, SIZE_UNIT, SMALLEST_REGION_PX
+from gnl.table import Settings
 
 ROOT = Path(__file__).parents[1]
 MODULES = {f"{path.parent.name}.{path.stem}": path for path in ROOT.glob("*/*.py")
@@ -24,6 +33,16 @@ LONGEST = 250
 OPEN_POINTS = ROOT / "tutorials" / "open_points.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "tutorials").rglob("*.md"))]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def test_defaults_are_the_papers_numbers():
+    assert (camera.SIZE_PX, N_CLASSES, N_WORDS, N_BEARINGS, CELL_M) == (512, 10, 270, 12, 2.0)
+    assert (SMALLEST_REGION_PX, FARTHEST_EDGE_PX, SIZE_UNIT) == (5000, 20, 16)
+    assert (N_PARTICLES, N_START_PLACES, LENGTH) == (5000, 3, 4)
+    assert (K_NEIGHBOURS, ALPHA, GAMMA, N_CHECKPOINTS) == (4, 0.1, 0.9, 10)
+    s = Settings()
+    assert (s.episodes, s.tests, s.validation) == (10_000, 100, 10)
+    assert (s.gcn_views, s.gcn_epochs, s.gcn_batch, s.gcn_rate) == (10_000, 100, 32, 0.001)
 
 
 def imports(name):
