@@ -24,7 +24,8 @@ from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, executor, finished, load_starts, path_of, prepare, run_jobs
+from .table import Settings, agree, finished, load_starts, path_of, prepare, run_jobs
+from .terminal import executor
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
 CELLS = [Cell(world, 0.2, 10, 0) for world in WORLDS]  # narrow gaps leave room for many tests
@@ -50,7 +51,7 @@ def run(args):
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
     page = args.page and _read_page(args.page)
     out = Path(args.out)
-    check_folder("--out", out)
+    check_folder("--out", args.out)
     agree(out, asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
     todo = {name: job for name, job in jobs.items() if not finished(out, name, load)}

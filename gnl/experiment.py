@@ -123,6 +123,9 @@ def load_cell(path):
             sizes = {np.shape(arrays(outcome[name])) for outcome in tests for name in ("place", "location")}
             if len(sizes) > 1:
                 raise ValueError(f"tests of {sizes} episodes and looks")
+            n_tests, _ = sizes.pop()
+            if n_tests != (result.get("settings") or {}).get("tests", n_tests):
+                raise ValueError(f"{n_tests} tests")
         cell = Cell(**result["cell"])
         if cell.name != path.stem or not all(isinstance(value, (int, float)) for value in result["cell"].values()):
             raise ValueError(f"those of {cell}")

@@ -36,7 +36,9 @@ def write_whole(path, data):
 
 
 def check_folder(option, path):
-    """ValueError if there is a file where a folder will be."""
+    """ValueError if there is a file where a folder will be, or no name for it."""
+    if not str(path):
+        raise ValueError(f"{option}: expected a folder, found no name")
     for part in (Path(path), *Path(path).parents):
         if part.exists() and not part.is_dir():
             raise ValueError(f"{option}: expected a folder, found the file {part}")

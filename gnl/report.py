@@ -56,8 +56,14 @@ def load(out):
     settings = load_json(Path(out) / "settings.json", "the settings of a table")
     if not {"episodes", "tests"} <= settings.keys():
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
+    made_from = {}
     for result, _ in cells:
-        check_settings(path_of(out, Cell(**result["cell"]).name), result.get("settings") or {}, settings)
+        path = path_of(out, Cell(**result["cell"]).name)
+        check_settings(path, result.get("settings") or {}, settings)
+        parts = made_from.setdefault(result["cell"]["world"], result.get("made from"))
+        if parts != result.get("made from"):
+            raise ValueError(f"{path}: expected a cell made from {parts}, as others of its home, found one made from "
+                             f"{result.get('made from')}; name another folder")
     return *map(list, zip(*cells, strict=True)), settings
 
 
@@ -161,7 +167,8 @@ def power(results, methods):
         rows.append([f"{a} - {b}", *(f"{episodes_needed(points / 100, paired)} / {episodes_needed(points / 100, alone)}"
                                      for points in RESOLVED)])
     return ("To see a true difference in 80 % of all experiments at 95 %: episodes in pairs / episodes of each method "
-            "that are not paired.\n\n" + markdown(["", *(f"{n} point{'s' * (n != 1)}" for n in RESOLVED)], rows))
+            "that are not paired. This takes the episodes of a cell as independent; where they are alike it takes "
+            "more.\n\n" + markdown(["", *(f"{n} point{'s' * (n != 1)}" for n in RESOLVED)], rows))
 
 
 def locations(results, methods):

@@ -4,7 +4,6 @@ import os
 import subprocess
 import sys
 from concurrent.futures import FIRST_COMPLETED, wait
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from .gcn import BATCH, EPOCHS, RATE
 from .paper import WORLDS
 from .photo import check_noise
 from .senses import Senses
-from .terminal import Stage, processes
+from .terminal import Stage, executor
 from .world import World
 
 GAPS = tuple(f"{m}/{deg}" for m in GAPS_M for deg in GAPS_DEG)
@@ -64,7 +63,7 @@ def run(args):
     """Run the cells that are not finished yet."""
     settings, cells = check(args)
     out = Path(args.out)
-    check_folder("--out", out)
+    check_folder("--out", args.out)
     agree(out, asdict(settings))
     todo = [cell for cell in cells if not finished(out, cell.name, load_cell, asdict(settings))]
     write_whole(out / "settings.json", to_bytes(asdict(settings)))
@@ -144,6 +143,9 @@ def check(args):
     check_noise(settings.noise, "--noise")
     worlds = [800] if args.quick and args.worlds is WORLDS else [world_of(name) for name in args.worlds]
     gaps = [gap_of(name) for name in args.gaps or (QUICK_GAPS if args.quick else GAPS)]
+    for name, values in (("worlds", worlds), ("gaps", gaps)):
+        if len(set(values)) < len(values):
+            raise ValueError(f"--{name}: expected each once, found {' '.join(map(str, getattr(args, name)))}")
     return settings, [Cell(world, *gap, args.seed + i) for i in range(args.repeats) for gap in gaps for world in worlds]
 
 
@@ -227,18 +229,3 @@ def _load_home(path, seed):
     if home.name != f"home-{seed}":
         raise ValueError(f"{path}: expected home-{seed}, found {home.name}")
     return home
-
-
-@contextmanager
-def executor(jobs, address=None):
-    """Where cells run: processes beside this one, or the cluster of a dask scheduler."""
-    if address is None:
-        with processes(jobs) as pool:
-            yield pool
-        return
-    try:
-        from dask.distributed import Client
-    except ImportError:
-        raise ValueError("--dask: expected dask to be installed, pip install -e '.[cluster]'; found none") from None
-    with Client(address) as client:
-        yield client.get_executor()

@@ -101,6 +101,35 @@ def processes(n):
         pool.shutdown(cancel_futures=True)
 
 
+@contextmanager
+def executor(jobs, address=None):
+    """Where jobs run: so many processes beside this one, or the cluster of a dask scheduler."""
+    if address is None:
+        with processes(jobs) as pool:
+            yield pool
+        return
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise ValueError("--dask: expected dask to be installed, pip install -e '.[cluster]'; found none") from None
+    try:
+        client = Client(address)
+    except (ValueError, OSError) as error:
+        raise ValueError(f"--dask: expected the address of a scheduler, found {address!r} ({error})") from None
+    with client:
+        try:
+            client.submit(_is_there).result()
+        except Exception as error:  # of whatever kind: it comes from another machine
+            raise ValueError("--dask: expected a scheduler and workers whose Python has gnl, of this version, found "
+                             f"{type(error).__name__}: {error}") from None
+        yield client.get_executor()
+
+
+def _is_there():
+    """For a cluster to call: whoever can has gnl."""
+    return True
+
+
 def _end_with_the_first():
     """Let a process end when the one that started it is no more, even by kill -9."""
     def watch():

@@ -107,7 +107,7 @@ def test_nothing_but_the_four_dependencies_is_imported():
             named = [alias.name for alias in node.names] if isinstance(node, ast.Import) else (
                 [node.module] if isinstance(node, ast.ImportFrom) and not node.level else [])
             outside[name] |= {full.partition(".")[0] for full in named}
-    outside["gnl.table"] -= {"dask"}  # for who asks for a cluster, the extra of that name
+    outside["gnl.terminal"] -= {"dask"}  # for who asks for a cluster, the extra of that name
     strange = {name: found - allowed - sys.stdlib_module_names for name, found in outside.items()}
     assert {name: found for name, found in strange.items() if found} == {}
 

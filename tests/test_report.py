@@ -340,6 +340,17 @@ def test_cells_of_other_settings_are_not_mixed(folder, tmp_path, capsys):
     assert err.count("\n") == 1
 
 
+def test_cells_of_one_home_that_were_made_from_other_parts_are_not_mixed(folder, tmp_path, capsys):
+    shutil.copytree(folder, tmp_path / "mixed")
+    path = tmp_path / "mixed" / "cells" / "800-1m-90deg-seed0.json"
+    path.write_bytes(to_bytes(json.loads(path.read_bytes()) | {"made from": {"net": "another"}}))
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(tmp_path / "mixed")])
+    assert exit.value.code == 2
+    assert f"{path}: expected a cell made from None, as others of its home, found one made from " in (
+        capsys.readouterr().err)
+
+
 def with_a_planner(folder, to, cells):
     """A copy of the folder, "no return" tested in the cells that match, and always right."""
     shutil.copytree(folder, to, ignore=shutil.ignore_patterns("report"))

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import begun_by_make, full_disk
 
-from gnl import files, learned, segnet, table
+from gnl import files, learned, segnet, table, terminal
 from gnl.__main__ import main
 from gnl.experiment import Cell, load_cell, to_bytes
 
@@ -172,7 +172,8 @@ def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, done, capsy
     ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": "90", "seed": 0}}), ("costs", {"versions": []}),
     ("costs", {"machine": 5}), ("cells", {"validation": None}),
     ("cells", {"cell": {"world": 800, "t_xy_m": 1, "t_theta_deg": 70, "seed": 0}}), ("cells", {"cell": "800"}),
-    ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}), ("costs", {"versions": 3}), ("costs", {"views": 0})])
+    ("cells", {"settings": {"tests": 13}}), ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}),
+    ("costs", {"versions": 3}), ("costs", {"views": 0})])
 def test_no_damaged_file_is_taken_for_a_finished_cell_and_both_are_kept(done, capsys, kind, change):
     files = [done / folder / f"{NAMES[0]}.json" for folder in ("cells", "costs")]
     assert table.finished(done, NAMES[0], load_cell)
@@ -231,6 +232,8 @@ def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does
     (["--worlds", "17"], "--worlds: expected seeds of homes, 800 or more, found '17'"),
     (["--worlds", "\u00b2"], "--worlds: expected seeds of homes, 800 or more, found '\u00b2'"),
     (["--worlds", "kitchen"], "--worlds: expected seeds of homes, 800 or more, found 'kitchen'"),
+    (["--worlds", "800", "801", "0800"], "--worlds: expected each once, found 800 801 0800"),
+    (["--gaps", "0.2/10", "1.0/90", "0.2/10"], "--gaps: expected each once, found 0.2/10 1.0/90 0.2/10"),
     (["--gaps", "0.3/10"], "found '0.3/10'"), (["--gaps", "near"], "found 'near'"),
     (["--jobs", "0"], "--jobs: expected at least 1, found 0"), (["--jobs", "-2"], "found -2"),
     (["--episodes", "9"], "--episodes: expected at least 10, found 9"),
@@ -326,14 +329,33 @@ def test_the_quick_table_is_two_cells_of_one_home():
     assert cells == [Cell(800, 0.2, 10, 0), Cell(800, 1.0, 90, 0)]
 
 
-def test_where_nobody_listens_is_one_line(prepared, capsys):
-    import dask
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nowhere"])
+def test_where_nobody_listens_is_one_line(prepared, capsys, address):
+    import dask.distributed
 
     with dask.config.set({"distributed.comm.timeouts.connect": "200ms"}):
-        assert main_here(prepared, "--dask", "tcp://127.0.0.1:9") == 2
+        assert main_here(prepared, "--dask", address) == 2
     err = capsys.readouterr().err
-    assert "127.0.0.1:9" in err
+    assert f"--dask: expected the address of a scheduler, found '{address}'" in err
     assert err.count("\n") == 1
+
+
+def test_a_cluster_that_lacks_gnl_is_one_line(prepared, capsys, monkeypatch):
+    from dask.distributed import LocalCluster
+
+    def is_there():
+        raise ModuleNotFoundError("No module named 'gnl'")
+
+    monkeypatch.setattr(terminal, "_is_there", is_there)
+    with LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+        assert main_here(prepared, "--dask", cluster.scheduler_address) == 2
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert line.endswith("whose Python has gnl, of this version, found ModuleNotFoundError: No module named 'gnl'")
+
+
+def test_a_folder_without_a_name_is_refused(capsys):
+    assert main_here("") == 2
+    assert capsys.readouterr().err == "python -m gnl: --out: expected a folder, found no name\n"
 
 
 def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys, monkeypatch):
