@@ -20,7 +20,10 @@ def write_whole(path, data):
     """Write the bytes `data` to `path`: all of them or, on any interruption, nothing."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:  # it names the temporary file
+        raise OSError(error.errno, error.strerror, str(path)) from None
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
@@ -57,7 +60,7 @@ def load_arrays(path):
     if not Path(path).exists():
         raise ValueError(f"{path}: expected a file of arrays, found nothing")
     try:
-        if not zipfile.is_zipfile(path):
+        if not (Path(path).is_file() and zipfile.is_zipfile(path)):  # a device may have no end
             raise ValueError("no archive")
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}

@@ -147,7 +147,7 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     plan.robot(pose)
     page.paste(plan.picture(), 4, 44)
     page.text((24, 478), f"answer {'right' if right else 'wrong'}", 16, verdict)
-    page.text((140, 479), f"belief in the true place {look.pooled[look.place]:.2f}", 13)
+    page.text((140, 479), f"belief in the true place (green) {look.pooled[look.place]:.2f}", 13)
     page.paste(draw.legend([], KEY), 24, 506)
     page.paste(draw.legend(), 24, 534)
 
@@ -155,7 +155,7 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
     page.text((142, 27), doing, 15, canvas.ROBOT)
     x0, x1 = WIDTH_PX - 2 * VIEW_PX - 2 * GAP_PX, WIDTH_PX - VIEW_PX - GAP_PX
     parts = [("the robot sees", x0, 72), ("it recognises", x1, 72), ("this view says", x0, 300),
-             ("the filter believes", x1, 300), ("value of next action", x0, 470)]
+             ("the filter believes", x1, 300), ("value of next action: the greatest is chosen", x0, 470)]
     pictures = panel if look is looks[-1] else [*panel, _actions(look.q, action)]
     for (title, x, y), picture in zip(parts, pictures, strict=False):
         page.text((x, y - 13), title, 13)

@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import tempfile
 
 import numpy as np
 import pytest
@@ -60,6 +61,16 @@ def test_a_folder_in_the_way_is_told_by_its_name(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
+def test_where_no_file_can_be_made_the_target_is_named(tmp_path, monkeypatch):
+    def mkstemp(dir, prefix):
+        raise OSError(13, "Permission denied", f"{dir}/{prefix}1b2c3")
+
+    monkeypatch.setattr(tempfile, "mkstemp", mkstemp)
+    with pytest.raises(OSError) as refusal:
+        write_whole(tmp_path / "file", b"new")
+    assert str(refusal.value) == f"[Errno 13] Permission denied: '{tmp_path / 'file'}'"
+
+
 def test_a_failed_rename_leaves_all_as_it_was(tmp_path, monkeypatch):
     def refuse(*_):
         raise PermissionError
@@ -94,6 +105,10 @@ def missing(path):
 
 def folder(path):
     path.mkdir()
+
+
+def pipe(path):
+    os.mkfifo(path)  # who reads it waits for ever
 
 
 def empty(path):
@@ -155,7 +170,7 @@ def unknown_packing(path):
     path.write_bytes(data)
 
 
-FAULTS = [missing, folder, empty, text, single_array, pickles, no_header, header_of_numbers, header_of_a_list,
+FAULTS = [missing, folder, pipe, empty, text, single_array, pickles, no_header, header_of_numbers, header_of_a_list,
           header_without_maker, other_version, truncated, damaged_data, damaged_shape, unknown_packing]
 
 

@@ -56,6 +56,21 @@ def test_the_readme_says_what_the_report_says():
         assert numbers[1] == (row(papers, name)[0] if f"| {name} |" in papers.partition("\n## ")[0] else "")
 
 
+def test_what_is_said_of_seed_1_is_what_its_cells_say(tmp_path):
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(RESULTS / "seed1"), "--to", str(tmp_path)])
+    assert exit.value.code == 0
+    report, told = (tmp_path / "report.md").read_text(), (RESULTS / "README.md").read_text()
+    assert len(list((RESULTS / "seed1" / "cells").glob("*-seed1.json"))) == 75
+    for name in ("MV - SV", "Ours - MV", "DA - Ours", "Scan - MV", "Ours - Scan", "Ours+ - MV", "Ours+ - Scan"):
+        assert row(told, name)[:2] == [row(REPORT, name)[0], row(report, name)[0]]
+    for part, at in ((REPORT, 0), (report, 1)):
+        homes = row(part, "Ours - MV")[2:]
+        assert [row(told, f"home {world}")[at] for world in (800, 801, 809)] == homes
+        assert row(told, "Ours - MV, location alone")[at] == row(part.partition("## The location alone")[2],
+                                                                 "Ours - MV")[1]
+
+
 def test_what_pages_say_of_starts_of_training_is_in_the_report():
     part = REPORT.partition("## What Ours knows by heart")[2].partition("\n## ")[0]
     mean, interval = row(part, "all")[1].split(" ", 1)
