@@ -19,7 +19,7 @@ from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
 RAYS_AT_ONCE = 4096  # as many as stay near the processor; twice as many where no photograph needs the room
-A_LITTLE = 1e-6  # 1/m
+A_LITTLE = 1e-6  # 1/m, in inverse depth: by so much a top comes before what it touches
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
 NO_SURFACE = 63  # bit of the edges of no surface; where no bit is on, the lowest that is on counts as this one
 
@@ -146,7 +146,7 @@ def _visible(pile, n_rays, size, n_boxes):
     short = np.int32 if n_rays * H < 1 << 25 else np.int64
     start, top = ((ray * H << 6) + bit).astype(short), ((np.arange(n_rays + 1) * H << 6) + NO_SURFACE).astype(short)
     edges = start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)
-    edge = np.sort(np.concatenate(edges), kind="stable")  # each of the four nearly is in order: they are merged
+    edge = np.sort(np.concatenate(edges), kind="stable")  # four lists, each nearly in order: they are merged
     on = np.bitwise_xor.accumulate(np.uint64(1) << (edge & 63).astype(np.uint64))
     pixel = edge >> 6
     run = np.flatnonzero(pixel[1:] != pixel[:-1])
