@@ -83,6 +83,7 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
     """
     waiting = {pool.submit(*job): name for name, *job in jobs}
     n_jobs, stage = len(waiting), Stage(name_of_stage)
+    stage.note(f"0 of {n_jobs} cells")
     while waiting:
         ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
         for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
