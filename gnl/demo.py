@@ -121,8 +121,10 @@ def test(args, senses, grid, robot, plans, starts):
     senses.seconds, senses.views = {}, 0
     records = {}
     for i, (name, plan) in enumerate(plans.items()):
-        stage(i / len(plans), name)
-        records[name] = episode.run_all(senses, robot, grid, plan, starts, args.seed + 6)
+        def progress(share, right, i=i, name=name):
+            stage((i + share) / len(plans), f"{name} right {right:.0%}")
+
+        records[name] = episode.run_all(senses, robot, grid, plan, starts, args.seed + 6, progress)
     stage.done(f"{len(starts)} episodes of each method, from the same starts with the same noise")
     print_table(records)
     print_costs(senses)

@@ -105,11 +105,16 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
     return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
 
 
-def run_all(senses, robot, grid, plan, starts, seed, **options):
-    """`run` for any number of starts, some side by side, each group with a seed of its own; one Record."""
-    groups = side_by_side(starts)
-    records = [run(senses, robot, grid, plan, group, child, **options)
-               for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True)]
+def run_all(senses, robot, grid, plan, starts, seed, progress=None, **options):
+    """`run` for any number of starts, some side by side, each group with a seed of its own; one Record.
+
+    progress(share done, share right after the last look) is called after each group
+    """
+    groups, records = side_by_side(starts), []
+    for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True):
+        records.append(run(senses, robot, grid, plan, group, child, **options))
+        if progress:
+            progress(len(records) / len(groups), np.concatenate([record.correct[:, -1] for record in records]).mean())
     return Record(*(np.concatenate([getattr(r, name) for r in records]) for name in Record.__dataclass_fields__))
 
 

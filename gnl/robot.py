@@ -1,7 +1,7 @@
 """The robot: a disc that turns, goes forward and stops where it touches something.
 
-Contact is pymunk's own swept query: how far a point gets along a line among obstacles that are thicker by the robot's
-radius, which is how far a disc gets among the obstacles.
+Contact is pymunk's own swept query: how far a point of its body gets along a line among obstacles that are thicker by
+the robot's radius, which is how far a disc gets among the obstacles.
 
     action 0 turn left, 1 turn right, 2 forward
     pose (x [m], y [m], theta [rad]);  odometry (forward [m], turn [rad]): what the wheels report
@@ -32,11 +32,11 @@ class Motion:
 
 
 class Robot:
-    """A home's obstacles in a pymunk space, and a disc that moves among them."""
+    """A home's obstacles in a pymunk space, and a body that moves among them, of many robots one after the other."""
 
     def __init__(self, world, motion=Motion(), radius_m=ROBOT_RADIUS_M):  # noqa: B008 (frozen)
         self.motion = motion
-        self.space = pymunk.Space()
+        self.space, self.body = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         for (x, y), (a, b), angle in zip(world.centre[world.blocks], world.half[world.blocks],
                                          world.angle[world.blocks], strict=True):
             turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
@@ -65,9 +65,10 @@ class Robot:
     def advance(self, pose, distance_m):
         """How far a disc at `pose` gets straight ahead, at most `distance_m`, and whether something stopped it."""
         x, y, theta = pose
+        self.body.position, self.body.angle = (x, y), theta
         reach = distance_m + SKIN_M
-        target = (x + reach * np.cos(theta), y + reach * np.sin(theta))
-        hit = self.space.segment_query_first((x, y), target, 0, pymunk.ShapeFilter())
+        target = self.body.local_to_world((reach, 0))
+        hit = self.space.segment_query_first(self.body.position, target, 0, pymunk.ShapeFilter())
         if hit is None:
             return distance_m, False
         return max(0.0, hit.alpha * reach - SKIN_M), True

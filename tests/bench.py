@@ -25,7 +25,7 @@ from gnl.robot import N_ACTIONS, Robot
 from gnl.scene_graph import regions, scene_graph
 from gnl.senses import Senses
 from gnl.strip import cast
-from tests.bench_data import ray_loop, views_like
+from tests.bench_data import plain_filter, ray_loop, views_like
 
 ROUNDS, SAMPLE_S, K = 11, 0.004, 300  # turns of each peer, and how long one lasts at least; places
 
@@ -38,7 +38,8 @@ def optional(name):
         return None
 
 
-torch, torch_geometric, faiss = map(optional, ("tests.torch_rivals", "torch_geometric", "faiss"))
+torch, torch_geometric, faiss, filterpy = map(optional, ("tests.torch_rivals", "torch_geometric", "faiss",
+                                                         "filterpy.monte_carlo"))
 
 
 class Table:
@@ -193,7 +194,7 @@ def steps(table, world, rng):
 
 
 def filters(table, world, rng):
-    """One cycle of the particle filter beside the drawing of its random numbers alone."""
+    """One cycle of the particle filter beside the drawing of its random numbers alone, and filterpy's resampling."""
     grid = PlaceGrid(world)
     for n in (1, 32):
         likelihood = rng.dirichlet(np.full(grid.n_places, 0.1), n) + 1e-3
@@ -205,8 +206,10 @@ def filters(table, world, rng):
             belief.weigh(likelihood)
             belief.belief(grid.n_places)
 
+        plain = filterpy and plain_filter(grid, likelihood[0], rng, filterpy.systematic_resample)
         table.race(f"particle filter, M = 5000, {n} side by side", cycle, n,
-                   ("drawing the normals alone", lambda: rng.standard_normal((3, 5000), np.float32), 1, 3.0, 2.0))
+                   ("drawing the normals alone", lambda: rng.standard_normal((3, 5000), np.float32), 1, 3.0, 2.0),
+                   ("one plain filter, filterpy resampling", plain, 1, .2, .2))
 
 
 def main():

@@ -1,8 +1,9 @@
-"""What bench.py measures on: rays in pymunk, and ranks like those of a classifier."""
+"""What bench.py measures on: rays in pymunk, ranks like those of a classifier, and a filter as one writes it first."""
 
 import numpy as np
 import pymunk
 
+from gnl.particles import STD, ParticleFilter
 from gnl.ranks import reciprocal_ranks
 from gnl.strip import slopes
 
@@ -29,3 +30,23 @@ def views_like(n, n_places, rng):
     look, place = rng.standard_normal((40, 12)), rng.integers(n_places, size=n)
     kind = look[rng.integers(40, size=n_places)] + 0.5 * rng.standard_normal((n_places, 12))
     return reciprocal_ranks((kind[place] + 0.25 * rng.standard_normal((n, 12))) @ kind.T)
+
+
+def plain_filter(grid, likelihood, rng, resample):
+    """A function that is one cycle of a filter, one line an equation; resample(weights) -> indices."""
+    start = ParticleFilter(grid, likelihood[None], rng)
+    poses = np.stack([start.x[0], start.y[0], start.theta[0]], 1).astype(float)
+    weight, forward, turn = start.weight[0].astype(float), 0.5, 0.1
+
+    def cycle():
+        nonlocal poses, weight
+        poses = poses[resample(weight)]
+        poses[:, 0] += forward * np.cos(poses[:, 2])
+        poses[:, 1] += forward * np.sin(poses[:, 2])
+        poses[:, 2] += turn
+        poses += rng.normal(0, (STD[0], STD[0], STD[1]), poses.shape)
+        place = grid.place_of(poses)
+        weight = likelihood[place] / likelihood[place].sum()
+        return np.bincount(place, weight, grid.n_places)
+
+    return cycle

@@ -186,17 +186,23 @@ def test_make_gives_each_home_of_ones_own_a_folder(plan, folder):
 
 
 def test_every_method_has_the_same_starts_and_noise_and_costs_are_those_of_the_test_alone(monkeypatch, capsys):
-    asked, senses = [], SimpleNamespace(seconds={"view": 9.0}, views=3)
+    asked, told, senses = [], [], SimpleNamespace(seconds={"view": 9.0}, views=3)
 
-    def run_all(senses, _robot, _grid, plan, starts, seed):
+    def run_all(senses, _robot, _grid, plan, starts, seed, progress):
         asked.append((plan, id(starts), seed))
+        for share in (0.5, 1.0):
+            progress(share, 0.25)
         senses.views, senses.seconds["view"] = senses.views + 10, senses.seconds.get("view", 0) + 0.02
         return SimpleNamespace(correct=np.eye(4, 5, dtype=bool))
 
     monkeypatch.setattr(demo.episode, "run_all", run_all)
+    monkeypatch.setattr(demo.Stage, "__call__", lambda _stage, share, text: told.append((share, text)))
     starts = np.zeros((4, 3))
     demo.test(SimpleNamespace(seed=2), senses, None, None, {"MV": "m", "Scan": "s", "Ours": "o"}, starts)
     assert asked == [(plan, id(starts), 8) for plan in "mso"]
+    shares, words = zip(*told, strict=True)
+    assert shares == pytest.approx([1 / 6, 2 / 6, 3 / 6, 4 / 6, 5 / 6, 1])
+    assert words == tuple(f"{name} right 25%" for name in ("MV", "MV", "Scan", "Scan", "Ours", "Ours"))
     assert "  view 2.00\n" in capsys.readouterr().out
 
 

@@ -182,6 +182,19 @@ def test_many_episodes_are_their_groups_one_after_the_other(monkeypatch):
     assert len(together.poses) == 10
 
 
+def test_many_episodes_say_how_far_they_are_and_how_many_were_right_in_the_end(monkeypatch):
+    monkeypatch.setattr(episode, "SIDE_BY_SIDE", 4)
+    told, looks = [], []
+
+    def right_in_the_first_group(poses):
+        looks.append(poses)
+        return (knows if len(looks) <= 5 else mistakes)(poses)
+
+    run_all(Sense(right_in_the_first_group), Glide(), GRID, planners.chance, starts(10), 3,
+            lambda share, right: told.append((share, right)))
+    np.testing.assert_allclose(told, [(1 / 3, 1), (2 / 3, 4 / 7), (1, 4 / 10)])
+
+
 def test_the_likelihood_is_a_probability_and_a_floor_below_it():
     found = probability(np.array([[0.0, 0, 0, 500]]))
     np.testing.assert_allclose(found, [[1e-3, 1e-3, 1e-3, 1.001]], rtol=1e-6)
