@@ -9,16 +9,14 @@ nearest test start and is turned by more than T_theta from it, so that no episod
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from gnl.canvas import BELIEF, ROBOT
 from gnl.draw import save_png, sheet
-from gnl.experiment import Cell
+from gnl.experiment import Cell, beyond_gap
 from gnl.files import check_folder, load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
 from gnl.learned import digest
-from gnl.places import wrap_angle
 from gnl.terminal import Stage, processes
 from gnl.world import World
 
@@ -114,14 +112,6 @@ def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
                              f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
                              f"among {drawn} poses drawn, {sum(map(len, found)) / drawn:.3%}")
     return np.concatenate(found)[:n]
-
-
-def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
-    """Whether each pose is farther than T_xy from the nearest test start, and turned by more than T_theta from it."""
-    # CHOICE: the nearest test start is the nearest in location; both differences are against that one.
-    distance, nearest = cKDTree(tests[:, :2]).query(poses[:, :2])
-    turned = abs(wrap_angle(poses[:, 2] - tests[nearest, 2]))
-    return (distance > t_xy_m) & (turned > t_theta_rad)
 
 
 def picture(world, starts, n=400, width_px=720):

@@ -10,6 +10,7 @@ import os
 import re
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -99,16 +100,26 @@ def measure(choice, cell, senses, starts, settings):
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
     senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
+
+    def beyond(gap, n, rng):
+        """Of free poses n that lie beyond the cell's gap; a quarter of all do, or more."""
+        poses = senses.world.free_poses(8 * n, rng)
+        return poses[gap(poses, starts["tests"], cell.t_xy_m, np.radians(cell.t_theta_deg))][:n]
+
     with in_place(choice.constants):
         if choice.true_labels:
             senses.net = None
         if choice.anew:
-            how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
-            senses.gcn = learned.learn_places(senses, grid, settings.gcn_views, choice.luck, **how)
+            how = {"n_views": settings.gcn_views, "epochs": settings.gcn_epochs, "batch": settings.gcn_batch,
+                   "rate": settings.gcn_rate, "draw": choice.views_beyond and partial(beyond, choice.views_beyond)}
+            senses.gcn = learned.learn_places(senses, grid, seed=choice.luck, **how | choice.of_gcn)
+        training = starts["training"]
+        if choice.starts_beyond:
+            training = beyond(choice.starts_beyond, len(training), np.random.default_rng(cell.entropy))
         robot = Robot(senses.world, choice.motion)
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):
-            episode.train_nnql(senses, robot, grid, starts["training"], learning, choice.rules, store=store)
+            episode.train_nnql(senses, robot, grid, training, learning, choice.rules, store=store)
         result = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
                                                        rules=choice.rules))
                   for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}

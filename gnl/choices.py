@@ -5,19 +5,24 @@ must be read when it is used: a default (N_PARTICLES) was read when its function
 `partial`. Functions are those of a module: a choice is sent to other processes, and a lambda cannot be.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 from scipy import ndimage
 
+from .camera import render, true_labels
 from .episode import Rules
-from .gcn import GCN, mean_backward, mean_forward, normalise_adjacency
+from .experiment import beyond_gap
+from .gcn import BATCH, GCN, RATE, mean_backward, mean_forward, normalise_adjacency
 from .nn import softmax
-from .nnql import NNQL, SAME
+from .other_stores import BruteForce, Endless, OfAnyAction, Shrunk
 from .particles import FLOOR, ParticleFilter
+from .places import wrap_angle
 from .ranks import reciprocal_ranks
 from .robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
+from .scene_graph import VIEW_PX
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,9 @@ class Choice:
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
     anew: bool = False
+    of_gcn: dict = field(default_factory=dict)  # arguments of learned.learn_places
+    views_beyond: Callable | None = None  # gap (as experiment.beyond_gap) beyond which the classifier learns
+    starts_beyond: Callable | None = None  # and NNQL
     luck: int = 0  # which other seed of NNQL's training, and of the classifier's if it learns anew; 0: ours
 
 
@@ -59,6 +67,16 @@ def with_last_action(scores, _particles, actions):
     return np.concatenate([reciprocal_ranks(scores), last], 1)
 
 
+class WithContext:
+    """State: the view's ranks, and one number for how many actions were done and which was the last one."""
+
+    def __call__(self, scores, _particles, actions):
+        self.step = 0 if actions is None else self.step + 1
+        last = np.zeros(len(scores)) if actions is None else 1 + actions
+        context = self.step * (N_ACTIONS + 1) + last
+        return np.append(reciprocal_ranks(scores), context[:, None].astype(np.float32), 1)
+
+
 def at_the_end(right, done, **_others):
     """Reward after the last step alone."""
     return np.where(done, np.where(right, 1.0, -1.0), 0.0)
@@ -77,6 +95,19 @@ def by_rank(scores):
 def first_of_equals(q, _rng):
     """Ties: the first of equal actions."""
     return q.argmax(1)
+
+
+def finest(world, poses, rng, size, noise, wanted=None):
+    """True labels of all 512 x 512 pixels; as camera.render, and the same luck is drawn."""
+    rgb, _ = render(world, poses, rng, size, noise, wanted)
+    return rgb, true_labels(world, poses if wanted is None else poses[wanted], VIEW_PX)
+
+
+def far_or_turned(poses, tests, t_xy_m, t_theta_rad):
+    """Whether each pose is not both near to one of the tests and turned as it is; as experiment.beyond_gap."""
+    distance = np.hypot(*(poses[:, None, :2] - tests[:, :2]).T)
+    turned = abs(wrap_angle(poses[:, None, 2] - tests[:, 2])).T
+    return ((distance > t_xy_m) | (turned > t_theta_rad)).all(0)
 
 
 def touching_at_corners(labels):
@@ -125,58 +156,6 @@ class LeftOrForward(Robot):
         return super().step(poses, np.where(np.asarray(actions) == 0, LEFT, FORWARD), rng)
 
 
-class Endless(NNQL):
-    """Equation 2 as it is written, to the last step: what comes after it is worth what Q says."""
-
-    def learn(self, states, actions, rewards, next_states, done):
-        super().learn(states, actions, rewards, next_states, np.zeros_like(done))
-
-
-class OfAnyAction(NNQL):
-    """Neighbours may be of another action: a pair is a state and its action, one-hot, as in `with_last_action`."""
-
-    def __init__(self, n_places, n_actions):
-        super().__init__(n_places + n_actions, 1, index=BruteForce)
-        self.one_hot = np.eye(n_actions, dtype=np.float32)
-
-    def q_values(self, states):
-        of_pairs, n = super().q_values, len(states)
-        return np.concatenate([of_pairs(np.append(states, np.tile(a, (n, 1)), 1)) for a in self.one_hot], 1)
-
-    def learn(self, states, actions, rewards, next_states, done):
-        pairs, none = np.append(states, self.one_hot[actions], 1), np.zeros(len(states), int)
-        target = rewards + self.gamma * np.where(done, 0.0, self.q_values(next_states).max(1))
-        super().learn(pairs, none, target, pairs, np.ones_like(done))
-
-
-class BruteForce:
-    """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them.
-
-    In 64 bits: in 32, rounding alone would part a state from itself by more than nnql.SAME.
-    """
-
-    def __init__(self, dim):
-        self.points = np.empty((0, dim))
-
-    def add(self, points):
-        ids = np.arange(len(self.points), len(self.points) + len(points))
-        self.points = np.concatenate([self.points, points])
-        return ids
-
-    def find(self, points):
-        """The oldest equal point of each query, or -1."""
-        distance, found = self.query(points, 1)
-        return np.where(distance[:, 0] <= SAME, found[:, 0], -1)
-
-    def query(self, points, k, n_first=None):
-        points, there = points.astype(float), self.points[:n_first]
-        squares = (points ** 2).sum(1)[:, None] + (there ** 2).sum(1) - 2 * points @ there.T
-        order = np.argsort(squares.clip(0), 1, kind="stable")[:, :k]
-        distances = np.sqrt(np.take_along_axis(squares.clip(0), order, 1))
-        lacking = ((0, 0), (0, k - order.shape[1]))
-        return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)
-
-
 CHOICES = [
     Choice("labels of the views", "true labels", true_labels=True, anew=True),
     Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),
@@ -184,9 +163,14 @@ CHOICES = [
            anew=True),
     Choice("field of view", "120 degrees", constants={"strip.FIELD_OF_VIEW_RAD": 2 * np.pi / 3}, true_labels=True,
            anew=True),
+    Choice("size of the net's view", "512 x 512, true labels", constants={"senses.render": finest}, true_labels=True,
+           anew=True),
     Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
     Choice("width of the GCN", "256", constants={"gcn.GCN": partial(GCN, hidden=256)}, anew=True),
+    Choice("epochs of the GCN", "a hundred batches of 32", anew=True,
+           of_gcn={"n_views": 100 * BATCH, "epochs": 1, "batch": BATCH, "rate": RATE}),
+    Choice("views of the classifier", "beyond the gap alone", anew=True, views_beyond=beyond_gap),
     Choice("sums over neighbours", "plain", constants={"gcn.normalise_adjacency": plain_sums}, anew=True),
     Choice("readout of the graph", "sum of its nodes", anew=True,
            constants={"gcn.mean_forward": sum_forward, "gcn.mean_backward": sum_backward}),
@@ -221,9 +205,12 @@ CHOICES = [
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
+    *(Choice("mean of the neighbours", f"and, as {pull} more, that of step and last action",
+             Rules(state=WithContext()), constants={"nnql.NNQL": partial(Shrunk, pull=pull)}) for pull in (4, 64)),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
+    Choice("nearest test start", "any: far from each or turned from it", starts_beyond=far_or_turned),
     Choice("ties between actions", "the first of equals", constants={"planners.best_actions": first_of_equals}),
     Choice("order of learning", "one robot at a time", of_training={"episode.SIDE_BY_SIDE": 1}),
     *(Choice("luck of the training", f"seed {n}", luck=n) for n in range(1, 9)),

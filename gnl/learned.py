@@ -125,11 +125,14 @@ def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
         yield world, kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world))
 
 
-def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, **how):
-    """GCN trained on views from random free poses; half of them are seen by the `helper`, if there is one."""
+def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, draw=None, **how):
+    """GCN trained on views from random free poses; half of them are seen by the `helper`, if there is one.
+
+    draw(n, rng) : poses (n, 3) to learn from, if not from anywhere
+    """
     rng = np.random.default_rng(seed)
     # CHOICE: from the whole home, places near the tests too; the paper trains one classifier "for each dataset".
-    poses = senses.world.free_poses(n_views, rng)
+    poses = (draw or senses.world.free_poses)(n_views, rng)
     half = n_views // 2 if helper and n_views > 1 else n_views
     theirs = half < n_views and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
     graphs = senses.look_around(poses[:half], rng, stage and (lambda share: stage(0.5 * share, "looking around")))

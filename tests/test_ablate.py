@@ -12,18 +12,19 @@ import pytest
 
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
-from gnl import ablate, camera, episode, gcn, learned, nnql, particles, planners, scene_graph, strip
+from gnl import ablate, camera, episode, gcn, learned, nnql, particles, planners, scene_graph, senses, strip
 from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Rules
-from gnl.experiment import to_bytes
+from gnl.experiment import beyond_gap, to_bytes
 from gnl.files import write_whole
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion
 from gnl.senses import Senses
 from gnl.table import Settings, path_of
+from gnl.world import ROBOT_RADIUS_M
 
 PAGE = Path(__file__).parents[1] / "tutorials" / "open_points.md"
 CELL = ablate.CELLS[0]
@@ -38,7 +39,7 @@ def parts():
 
 def constants():
     """What the modules that choices reach into hold now."""
-    modules = ablate, camera, episode, gcn, nnql, particles, planners, scene_graph, strip
+    modules = ablate, camera, episode, gcn, nnql, particles, planners, scene_graph, senses, strip
     return {(module.__name__, name): str(value) for module in modules for name, value in vars(module).items()
             if not name.startswith("__")}
 
@@ -53,21 +54,34 @@ def test_every_choice_runs_and_leaves_no_trace(choice, parts):
 
 
 OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Motion(forward_m=1.0), true_labels=True,
-               anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3}, luck=2)
+               anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3}, luck=2,
+               of_gcn={"n_views": 7, "epochs": 9}, views_beyond=beyond_gap, starts_beyond=beyond_gap)
 
 
 @pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
 def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, parts, monkeypatch):
     senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
+    home = senses.world
+
+    def beyond(poses):
+        return beyond_gap(poses, starts["tests"], CELL.t_xy_m, np.radians(CELL.t_theta_deg))
+
     gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
-    def learn_places(senses, grid, n_views, seed, **how):
+    def learn_places(senses, grid, n_views, seed, draw, **how):
         learnt.append((senses.net, n_views, seed, how))
+        if draw:
+            poses = draw(50, np.random.default_rng(3))
+            assert len(poses) == 50
+            assert beyond(poses).all()
+            assert home.is_free(poses[:, :2], ROBOT_RADIUS_M).all()
         return "another GCN"
 
     def train_nnql(senses, robot, grid, poses, seed, rules, store):
         trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
-        assert (poses is starts["training"], store.k) == (True, choice.store.get("k", nnql.K_NEIGHBOURS))
+        assert store.k == choice.store.get("k", nnql.K_NEIGHBOURS)
+        assert (poses is starts["training"]) == (choice is OURS)
+        assert (len(poses), beyond(poses).all()) == (12, True)
         there = choice.of_training.get("episode.SIDE_BY_SIDE", at_once)
         assert there == episode.SIDE_BY_SIDE
         tested.append(seed.spawn_key)
@@ -85,7 +99,7 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     result, _ = ablate.measure(choice, CELL, senses, starts, s)
     net = None if choice.true_labels else senses.net
     how = {"epochs": s.gcn_epochs, "batch": s.gcn_batch, "rate": s.gcn_rate}
-    assert learnt == ([(net, s.gcn_views, 2, how)] if choice.anew else [])
+    assert learnt == ([(net, 7, 2, how | {"epochs": 9})] if choice.anew else [])
     there = 0.7 if choice is OTHER else height
     assert trained == [(net, "another GCN" if choice.anew else gcn, choice.motion, choice.rules, there)] * 3
     assert tested[0] != tested[1] == tested[2]
@@ -139,9 +153,9 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
         of_view = any(name.startswith(("camera.", "strip.")) for name in choice.constants)
         assert choice.true_labels >= of_view  # no net knows such views
         changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck,
-                        choice.anew and choice.luck))
+                        choice.anew and choice.luck, choice.of_gcn, choice.views_beyond, choice.starts_beyond))
         assert choice.store.get("k") != nnql.K_NEIGHBOURS
-    ours = OURS.rules, OURS.store, OURS.motion, {}, False, 0, False
+    ours = OURS.rules, OURS.store, OURS.motion, {}, False, 0, False, {}, None, None
     assert all(one != other for one, other in itertools.combinations([ours, *changes], 2))
 
 

@@ -5,8 +5,8 @@ import pytest
 from conftest import drawn
 
 from gnl import ablate, choices, episode
-from gnl.choices import CHOICES, BruteForce
-from gnl.kdtree import KDTree
+from gnl.camera import render, true_labels
+from gnl.choices import CHOICES
 from gnl.nn import softmax
 from gnl.particles import ParticleFilter
 from gnl.places import PlaceGrid
@@ -34,6 +34,22 @@ def test_the_filter_ranks_places_by_all_their_particles_or_by_the_heaviest():
                            for kind in ("", ", max"))
     np.testing.assert_array_equal(by_sum(SCORES[:1], particles, None), reciprocal_ranks([[0.6, 0.4, 0]]))
     np.testing.assert_array_equal(by_greatest(SCORES[:1], particles, None), reciprocal_ranks([[0.3, 0.4, 0]]))
+
+
+def test_finest_labels_are_those_of_the_whole_view_and_draw_the_same_luck():
+    home, rng, again = drawn(1), np.random.default_rng(1), np.random.default_rng(1)
+    poses, wanted = home.free_poses(3, np.random.default_rng(0)), np.array([True, False, True])
+    rgb, labels = choices.finest(home, poses, rng, 64, 1.0, wanted)
+    np.testing.assert_array_equal(labels, true_labels(home, poses[wanted], 512))
+    np.testing.assert_array_equal(rgb, render(home, poses, again, 64, 1.0, wanted)[0])
+    assert rng.random() == again.random()
+    assert choices.finest(home, poses, rng, 64, 1.0)[1].shape == (3, 512, 512)
+
+
+def test_far_or_turned_is_beyond_the_gap_from_each_test_in_one_way_or_the_other():
+    tests = np.array([[0.0, 0, 0], [1, 0, np.pi]])
+    poses = np.array([[0.1, 0, 0.1], [0.1, 0, 1], [0.3, 0, 0], [1, 0.1, -3.1], [1, 0.1, 0]])
+    assert choices.far_or_turned(poses, tests, 0.2, 0.5).tolist() == [False, True, True, False, True]
 
 
 def test_corners_join_regions_that_sides_do_not():
@@ -72,27 +88,12 @@ def test_a_robot_of_two_actions_turns_left_and_goes_forward(two_rooms):
     np.testing.assert_allclose(odometry, [[0, np.pi / 6], [0.5, 0]], atol=0.15)
 
 
-def test_without_an_end_q_goes_on_after_the_last_step():
-    s, t, no_end = np.float32([[1, 0.5]]), np.float32([[0.5, 1]]), choices.Endless(2, 1)
-    no_end.learn(t, np.array([0]), np.array([10.0]), s, np.array([True]))  # 0.1 of 10
-    no_end.learn(s, np.array([0]), np.array([0.0]), t, np.array([True]))  # 1, as its neighbour, and on to 0.9
-    np.testing.assert_allclose(no_end.q_values(np.append(s, t, 0))[:, 0], [0.99, 1.0])
-
-
-def test_neighbours_of_any_action_are_the_nearest_in_state_and_action():
-    """By hand: k = 4, states at right angles; another action is as far as another state."""
-    states, store = np.eye(4, dtype=np.float32), choices.OfAnyAction(4, 2)
-    told = (0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (2, 1, 4.0), (3, 1, 5.0)
-    for state, action, reward in told:
-        store.learn(states[[state]], np.array([action]), np.array([reward]), states[:1], np.array([True]))
-    one = 0.1
-    two = one + 0.1 * (2 - one)  # each begins at the mean of its four nearest, the nearer and then the older first
-    three = (one + two) / 2 + 0.1 * (3 - (one + two) / 2)
-    four = (one + two + three) / 3 + 0.1 * (4 - (one + two + three) / 3)
-    five = (one + two + three + four) / 4 + 0.1 * (5 - (one + two + three + four) / 4)
-    np.testing.assert_allclose(store.q_values(states[:1]), [[one, two]])  # met before
-    np.testing.assert_allclose(store.q_values(states[1:2]), [[three, (two + three + four + five) / 4]])
-    assert store.q_values(states).shape == (4, 2)
+def test_a_context_is_the_number_of_actions_done_and_the_last_of_them():
+    state = choices.WithContext()
+    seen = [state(SCORES, None, actions) for actions in (None, np.array([0, 2]), np.array([1, 1]), None)]
+    assert [s[:, -1].tolist() for s in seen] == [[0, 0], [5, 7], [10, 10], [0, 0]]
+    for s in seen:
+        np.testing.assert_array_equal(s[:, :-1], reciprocal_ranks(SCORES))
 
 
 def test_a_likelihood_by_rank_is_the_reciprocal_rank_and_a_floor_below_it():
@@ -113,33 +114,6 @@ def test_plain_sums_and_a_sum_over_nodes_are_those_of_dense_algebra_and_their_ba
     total, cache = choices.sum_forward(H, starts)
     np.testing.assert_allclose(total, [H[:3].sum(0), H[3:].sum(0), np.zeros(4)], atol=1e-12)
     np.testing.assert_allclose((total * dout).sum(), (H * choices.sum_backward(dout, cache)).sum())  # it is linear
-
-
-def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
-    brute = BruteForce(3)
-    brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))
-    assert brute.find(np.float32([[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0.01, 1]])).tolist() == [1, 0, -1, -1]
-
-
-def test_brute_force_finds_states_of_all_kinds_again():
-    rng, brute = np.random.default_rng(0), BruteForce(300)
-    states = softmax(3 * rng.standard_normal((100, 300))).astype(np.float32)
-    brute.add(states)
-    assert brute.find(states).tolist() == list(range(100))
-    assert [brute.find(state[None])[0] for state in states] == list(range(100))
-
-
-def test_brute_force_answers_like_the_tree():
-    rng, brute, tree = np.random.default_rng(0), BruteForce(5), KDTree(5)
-    points = rng.random((40, 5), np.float32)
-    points[7] = points[3]
-    for part in np.array_split(points, 3):
-        np.testing.assert_array_equal(brute.add(part), tree.add(part))
-    queries = np.concatenate([rng.random((6, 5), np.float32), points[:4]])
-    for k, n_first in ((1, 40), (4, 40), (4, 10), (4, 2), (4, None)):
-        mine, trees = brute.query(queries, k, n_first), tree.query(queries, k, n_first)
-        np.testing.assert_allclose(mine[0], trees[0], atol=1e-6)
-        np.testing.assert_array_equal(mine[1], trees[1])
 
 
 def test_the_floor_of_a_choice_is_the_likelihood_of_what_is_ruled_out():
