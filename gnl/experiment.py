@@ -92,14 +92,18 @@ def run_cell(cell, senses, starts, settings=None):
     tests = test({**plans, **past}, starts["tests"], testing)
     known = training[np.linspace(0, len(training) - 1, len(starts["tests"])).astype(int)]
     by_heart = {"MV": plans["MV"], "Scan": plans["Scan"], "Ours": past[N_CHECKPOINTS - 1]}
-    made_from = {"home": learned.digest(senses.world.plan), "net": senses.net and learned.fingerprint(senses.net),
-                 "gcn": learned.fingerprint(getattr(senses.gcn, "params", {}))}  # another classifier may have none
-    result = {"name": cell.name, "cell": asdict(cell), "settings": settings, "made from": made_from,
+    result = {"name": cell.name, "cell": asdict(cell), "settings": settings, "made from": made_from(senses),
               "sequence": sequences[0].tolist(), "tests": {name: tests[name] for name in plans},
               "from training starts": test(by_heart, known, rehearsing),
               "checkpoints": [tests[i] for i in past],
               "validation": list(test(past, starts["validation"], validating).values())}
     return result, {**costs(senses, began, sum(map(len, store.values))), "of training": of_training}
+
+
+def made_from(senses):
+    """What identifies home, net and classifier."""
+    return {"home": learned.digest(senses.world.plan), "net": senses.net and learned.fingerprint(senses.net),
+            "gcn": learned.fingerprint(getattr(senses.gcn, "params", {}))}  # another classifier may have none
 
 
 def now():

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from . import learned
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, run_cell, to_bytes
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, made_from, run_cell, to_bytes
 from .files import check_folder, load_arrays, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
 from .paper import WORLDS
@@ -69,11 +69,22 @@ def run(args):
     write_whole(out / "settings.json", to_bytes(asdict(settings)))
     if todo:
         with executor(args.jobs, args.dask) as pool:
-            jobs = ((cell.name, run_cell, cell, senses, load_starts(out, cell, settings), asdict(settings))
-                    for world, senses in prepare(out, settings, todo, args.jobs, pool)
-                    for cell in todo if cell.world == world)
-            run_jobs(out, jobs, settings.episodes, pool, "table")
+            run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
     print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
+
+
+def jobs_of(out, settings, cells, todo, jobs, pool):
+    """A job for each of the cells to do; ValueError if one that is done was made from another net or classifier."""
+    for world, senses in prepare(out, settings, todo, jobs, pool):
+        here = made_from(senses)
+        for path in (path_of(out, cell.name) for cell in cells if cell.world == world and cell not in todo):
+            there = load_json(path, "the outcomes of a cell").get("made from")
+            if there != here:
+                raise ValueError(f"{path}: expected a cell made from {here}, as new ones are, found one made from "
+                                 f"{there}; name another folder with --out")
+        for cell in todo:
+            if cell.world == world:
+                yield cell.name, run_cell, cell, senses, load_starts(out, cell, settings), asdict(settings)
 
 
 def run_jobs(out, jobs, n_episodes, pool, name_of_stage):

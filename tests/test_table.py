@@ -220,6 +220,20 @@ def test_a_home_of_another_name_is_refused(prepared, capsys):
     assert f"python -m gnl: {path}: expected home-800, found home-801" in capsys.readouterr().err
 
 
+def test_a_finished_cell_of_another_net_is_refused_before_others_are_begun(done, capsys):
+    other, lacking = (done / "cells" / f"{name}.json" for name in ("800-1m-90deg-seed0", "800-1m-90deg-seed1"))
+    found = json.loads(other.read_bytes())
+    other.write_bytes(to_bytes(found | {"made from": found["made from"] | {"net": "12345678"}}))
+    with pytest.raises(SystemExit) as exit:
+        main(["table", *OPTIONS, "--out", str(done), "--jobs", "1", "--repeats", "2"])
+    assert exit.value.code == 2
+    expected, there = capsys.readouterr().err.split(", as new ones are, found one made from ")
+    assert f"{other}: expected a cell made from " in expected
+    assert f"'net': '{found['made from']['net']}'" in expected
+    assert "'net': '12345678'" in there
+    assert not lacking.exists()
+
+
 def test_a_finished_cell_of_other_settings_is_refused_even_where_the_folder_does_not_tell(done, capsys):
     (done / "settings.json").unlink()
     assert main_here(done, "--tests", 7) == 2

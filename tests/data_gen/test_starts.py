@@ -9,7 +9,7 @@ from scipy import stats
 from data_gen import starts as starts_module
 from data_gen.__main__ import main
 from data_gen.rooms import make_home
-from data_gen.starts import beyond_gap, draw_starts, starts_of, training_starts
+from data_gen.starts import draw_starts, starts_of, training_starts
 from gnl.canvas import BELIEF, ROBOT
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
 from gnl.files import load_arrays
@@ -61,23 +61,6 @@ def test_there_are_starts_just_beyond_the_gap_so_it_is_not_larger_than_said():
     distance, turn = differences(starts["training"], starts["tests"])
     assert distance.min() < 0.401
     assert np.degrees(turn.min()) < 50.2
-
-
-def test_the_gap_is_a_matter_of_the_nearest_test_start_alone():
-    tests = np.array([[0.0, 0, 0], [1.0, 0, np.pi]])
-    poses = np.array([[0.3, 0, 1.0], [0.3, 0, 0.1], [0.1, 0, 1.0], [0.8, 0, 3.0], [0.7, 0, 0.0], [0.3, 0, -3.1]])
-    assert beyond_gap(poses, tests, 0.2, 0.5).tolist() == [True, False, False, False, True, True]
-
-
-def test_what_is_just_as_far_as_the_gap_is_not_beyond_it():
-    poses = np.array([[0.25, 0, 1.0], [0.5, 0, 0.5], [0.5, 0, 1.0]])
-    assert beyond_gap(poses, np.zeros((1, 3)), 0.25, 0.5).tolist() == [False, False, True]
-
-
-def test_bearings_are_compared_around_the_circle():
-    tests = np.array([[0.0, 0, np.pi - 0.05]])
-    poses = np.array([[1.0, 0, -np.pi + 0.1], [1.0, 0, -np.pi + 0.5]])
-    assert beyond_gap(poses, tests, 0.5, 0.2).tolist() == [False, True]
 
 
 def test_training_starts_are_uniform_but_for_the_gap():
