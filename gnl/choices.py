@@ -205,8 +205,9 @@ CHOICES = [
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
-    *(Choice("mean of the neighbours", f"and, as {pull} more, that of step and last action",
-             Rules(state=WithContext()), constants={"nnql.NNQL": partial(Shrunk, pull=pull)}) for pull in (4, 64)),
+    *(Choice("mean of the neighbours", f"and, as {pull} more, that of step and last action{seed}",
+             Rules(state=WithContext()), constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n)
+      for pull, n, seed in ((4, 0, ""), (64, 0, ""), *((64, n, f", seed {n}") for n in range(1, 5)))),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
