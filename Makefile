@@ -31,7 +31,8 @@ LONG := tests/test_demo.py tests/test_table.py tests/test_tutorials.py
 
 help:
 	@echo "make demo    learn every stage in a home and let a robot find out where it is (out/demo)"
-	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1 HOUSE=800 (from 40 on) ALIASING=0.3"
+	@echo "             PLAN=path/NAME.json a home of your own (out/demo-NAME)    SEED=0 NOISE=1"
+	@echo "             HOUSE=800 another home, from 40 on    ALIASING=0.3 how alike its rooms are, 0..1"
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests, but for the long ones"
 	@echo "make test-long   run those: demo and tables from end to end, killed and begun again; all chapters"

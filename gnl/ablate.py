@@ -47,7 +47,7 @@ def run(args):
     points = {choice.point for choice in CHOICES}
     for point in args.points or ():
         if point not in points:
-            raise ValueError(f"--points: expected some of {', '.join(sorted(points))}, found {point!r}")
+            raise ValueError(f"--points: expected some of {', '.join(map(repr, sorted(points)))}, found {point!r}")
     chosen = [choice for choice in CHOICES if not args.points or choice.point in args.points]
     chosen = [OURS, TRUE_LABELS, *(choice for choice in chosen if choice is not TRUE_LABELS)]
     page = args.page and _read_page(args.page)
