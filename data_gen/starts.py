@@ -1,7 +1,8 @@
 """Start poses with a cross-view gap: robots learn where they will not be tested (section III).
 
 Test starts are uniform in free space. A training start is drawn again until it lies farther than T_xy from the
-nearest test start and is turned by more than T_theta from it, so that no episode of learning begins where a test does.
+nearest test start and is turned by more than T_theta from it (gnl/gaps.py), so that no episode of learning begins where
+a test does.
 
     T_xy [m], T_theta [rad]   the domain gap     n starts, each (x [m], y [m], theta [rad])
 """
@@ -12,17 +13,16 @@ import numpy as np
 
 from gnl.canvas import BELIEF, ROBOT
 from gnl.draw import save_png, sheet
-from gnl.experiment import Cell, beyond_gap
+from gnl.experiment import Cell
 from gnl.files import check_folder, load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
+from gnl.gaps import poses_beyond
 from gnl.learned import digest
 from gnl.terminal import Stage, processes
 from gnl.world import World
 
 from .rooms import make_home
-
-DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
 
 
 def add_arguments(parser):
@@ -92,26 +92,8 @@ def draw_starts(world, t_xy_m, t_theta_rad, n_training, n_tests, n_validation, r
     The test starts are drawn first: from equal generators they are the same whatever the gap.
     """
     tests, validation = world.free_poses(n_tests, rng), world.free_poses(n_validation, rng)
-    training = training_starts(world, tests, t_xy_m, t_theta_rad, n_training, rng)
+    training = poses_beyond(world, tests, t_xy_m, t_theta_rad, n_training, rng)
     return {"tests": tests, "validation": validation, "training": training}
-
-
-def training_starts(world, tests, t_xy_m, t_theta_rad, n, rng):
-    """n poses uniform over the free space beyond the gap from the nearest of the tests (m, 3): (n, 3).
-
-    ValueError with the share of poses that would do, if a home has too little of it
-    """
-    found, drawn = [], 0
-    while sum(map(len, found)) < n:
-        poses = rng.uniform((*world.bounds[:2], -np.pi), (*world.bounds[2:], np.pi), (DRAWN_AT_ONCE, 3))
-        poses = poses[beyond_gap(poses, tests, t_xy_m, t_theta_rad)]
-        found.append(poses[world.is_reachable(poses[:, :2])])
-        drawn += DRAWN_AT_ONCE
-        if sum(map(len, found)) < FEWEST * drawn:
-            raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
-                             f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
-                             f"among {drawn} poses drawn, {sum(map(len, found)) / drawn:.3%}")
-    return np.concatenate(found)[:n]
 
 
 def picture(world, starts, n=400, width_px=720):

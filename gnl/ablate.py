@@ -20,6 +20,7 @@ from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
 from .experiment import Cell, costs, costs_of, now, to_bytes
 from .files import check_folder, load_json, write_whole
+from .gaps import poses_beyond
 from .outcomes import answers, outcomes
 from .paper import WORLDS
 from .places import PlaceGrid
@@ -100,22 +101,17 @@ def measure(choice, cell, senses, starts, settings):
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
     senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
-
-    def beyond(gap, n, rng):
-        """Of free poses n that lie beyond the cell's gap; a quarter of all do, or more."""
-        poses = senses.world.free_poses(8 * n, rng)
-        return poses[gap(poses, starts["tests"], cell.t_xy_m, np.radians(cell.t_theta_deg))][:n]
-
+    beyond = partial(poses_beyond, senses.world, starts["tests"], cell.t_xy_m, np.radians(cell.t_theta_deg))
     with in_place(choice.constants):
         if choice.true_labels:
             senses.net = None
         if choice.anew:
             how = {"n_views": settings.gcn_views, "epochs": settings.gcn_epochs, "batch": settings.gcn_batch,
-                   "rate": settings.gcn_rate, "draw": choice.views_beyond and partial(beyond, choice.views_beyond)}
+                   "rate": settings.gcn_rate, "draw": choice.views_beyond and partial(beyond, gap=choice.views_beyond)}
             senses.gcn = learned.learn_places(senses, grid, seed=choice.luck, **how | choice.of_gcn)
         training = starts["training"]
         if choice.starts_beyond:
-            training = beyond(choice.starts_beyond, len(training), np.random.default_rng(cell.entropy))
+            training = beyond(len(training), np.random.default_rng(learning.spawn(1)[0]), gap=choice.starts_beyond)
         robot = Robot(senses.world, choice.motion)
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):

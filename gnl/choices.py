@@ -14,7 +14,7 @@ from scipy import ndimage
 
 from .camera import render, true_labels
 from .episode import Rules
-from .experiment import beyond_gap
+from .gaps import beyond_gap
 from .gcn import BATCH, GCN, RATE, mean_backward, mean_forward, normalise_adjacency
 from .nn import softmax
 from .other_stores import BruteForce, Endless, OfAnyAction, Shrunk
@@ -38,43 +38,45 @@ class Choice:
     of_training: dict = field(default_factory=dict)  # constants while NNQL learns
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
-    anew: bool = False
-    of_gcn: dict = field(default_factory=dict)  # arguments of learned.learn_places
-    views_beyond: Callable | None = None  # gap (as experiment.beyond_gap) beyond which the classifier learns
-    starts_beyond: Callable | None = None  # and NNQL
+    anew: bool = False  # the GCN is learned anew; the next two are how
+    of_gcn: dict = field(default_factory=dict)  # other arguments of learned.learn_places
+    views_beyond: Callable | None = None  # it sees views from beyond the gap from the tests, as gaps.beyond_gap, alone
+    starts_beyond: Callable | None = None  # NNQL learns from starts beyond this gap from the tests, and not ours
     luck: int = 0  # which other seed of NNQL's training, and of the classifier's if it learns anew; 0: ours
 
 
-def probabilities(scores, _particles, _actions):
+def probabilities(scores, _particles, _step, _actions):
     """State: probabilities instead of reciprocal ranks."""
     return softmax(scores).astype(np.float32)
 
 
-def best_place(scores, _particles, _actions):
+def best_place(scores, _particles, _step, _actions):
     """State: the best place alone, one-hot."""
     return np.eye(scores.shape[1], dtype=np.float32)[scores.argmax(1)]
 
 
-def filter_ranks(scores, particles, _actions, pooling="sum"):
+def filter_ranks(scores, particles, _step, _actions, pooling="sum"):
     """State: the reciprocal ranks of the filter's belief instead of the view's."""
     return reciprocal_ranks(particles.belief(scores.shape[1], pooling))
 
 
-def with_last_action(scores, _particles, actions):
+def with_last_action(scores, _particles, _step, actions):
     """State: the view's ranks and the last action, one-hot: two actions are 1.4 apart, two views at most 1.8."""
     last = np.zeros((len(scores), N_ACTIONS + 1), np.float32)
     last[np.arange(len(scores)), 0 if actions is None else actions + 1] = 1
     return np.concatenate([reciprocal_ranks(scores), last], 1)
 
 
-class WithContext:
+def with_context(scores, _particles, step, actions):
     """State: the view's ranks, and one number for how many actions were done and which was the last one."""
+    last = np.zeros(len(scores)) if actions is None else 1 + actions
+    context = step * (N_ACTIONS + 1) + last
+    return np.append(reciprocal_ranks(scores), context[:, None].astype(np.float32), 1)
 
-    def __call__(self, scores, _particles, actions):
-        self.step = 0 if actions is None else self.step + 1
-        last = np.zeros(len(scores)) if actions is None else 1 + actions
-        context = self.step * (N_ACTIONS + 1) + last
-        return np.append(reciprocal_ranks(scores), context[:, None].astype(np.float32), 1)
+
+def without_context(scores, _particles, _step, _actions):
+    """The same for whatever was done: one context for all."""
+    return np.append(reciprocal_ranks(scores), np.zeros((len(scores), 1), np.float32), 1)
 
 
 def at_the_end(right, done, **_others):
@@ -104,7 +106,7 @@ def finest(world, poses, rng, size, noise, wanted=None):
 
 
 def far_or_turned(poses, tests, t_xy_m, t_theta_rad):
-    """Whether each pose is not both near to one of the tests and turned as it is; as experiment.beyond_gap."""
+    """Whether each pose is not both near to one of the tests and turned as it is; as gaps.beyond_gap."""
     distance = np.hypot(*(poses[:, None, :2] - tests[:, :2]).T)
     turned = abs(wrap_angle(poses[:, None, 2] - tests[:, 2])).T
     return ((distance > t_xy_m) | (turned > t_theta_rad)).all(0)
@@ -205,9 +207,11 @@ CHOICES = [
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
-    *(Choice("mean of the neighbours", f"and, as {pull} more, that of step and last action{seed}",
-             Rules(state=WithContext()), constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n)
-      for pull, n, seed in ((4, 0, ""), (64, 0, ""), *((64, n, f", seed {n}") for n in range(1, 5)))),
+    *(Choice("mean of the neighbours", other + (f", seed {n}" if n else ""), Rules(state=state),
+             constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n) for n in range(5) for other, state, pull in (
+                 ("and, as 64 more, that of step and last action", with_context, 64),
+                 ("that of step and last action alone", with_context, 1e9),
+                 ("and, as 64 more, that of the action", without_context, 64))),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),

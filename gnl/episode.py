@@ -27,7 +27,7 @@ def probability(scores):
     return softmax(scores) + FLOOR  # CHOICE: softmax and a floor; the paper does not say how a view weighs a particle
 
 
-def view_ranks(scores, _particles, _actions):
+def view_ranks(scores, _particles, _step, _actions):
     """State: the reciprocal ranks of the latest view, (B, K)."""
     return reciprocal_ranks(scores)
 
@@ -94,7 +94,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
         else:
             particles = senses.timed("filter", rules.filter, grid, fit, filtering)
         pooled = senses.timed("filter", particles.belief, grid.n_places, rules.pooling)
-        seen, states = states, senses.timed("ranks", rules.state, scores, particles, actions)
+        seen, states = states, senses.timed("ranks", rules.state, scores, particles, step, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
         in_place = pooled[np.arange(B), places]
         for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", in_place)):

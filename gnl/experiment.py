@@ -21,13 +21,12 @@ from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from . import episode, learned, planners
 from .files import load_json
 from .options import Experience, Options
 from .outcomes import arrays, curve, from_training, outcomes, right
-from .places import PlaceGrid, wrap_angle
+from .places import PlaceGrid
 from .robot import Robot
 from .senses import SharedSenses
 
@@ -54,14 +53,6 @@ class Cell:
     def entropy(self):
         """What its random numbers grow from."""
         return [self.seed, self.world, round(1000 * self.t_xy_m), self.t_theta_deg]
-
-
-def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
-    """Whether each pose is farther than T_xy from the nearest test start, and turned by more than T_theta from it."""
-    # CHOICE: the nearest test start is the nearest in location; both differences are against that one.
-    distance, nearest = cKDTree(tests[:, :2]).query(poses[:, :2])
-    turned = abs(wrap_angle(poses[:, 2] - tests[nearest, 2]))
-    return (distance > t_xy_m) & (turned > t_theta_rad)
 
 
 def run_cell(cell, senses, starts, settings=None):

@@ -37,7 +37,9 @@ class Shrunk(NNQL):
 
         Q(s, a) <- [k Q(s, a) + pull Q(c, a)] / (k + pull)     c   how many actions were done, and the last one
 
-    The last number of a state is its context (choices.WithContext); a pair has that in which it was met last.
+    The last number of a state is its context (choices.with_context); a pair has that in which it was met last. Q(c, a)
+    is 0 where nothing was met; a pair that is born starts at the mean of its neighbours as it is. For one run: what is
+    saved, or asked of a checkpoint, knows no contexts.
     """
 
     def __init__(self, n_places, n_actions, pull):

@@ -32,7 +32,7 @@ class Motion:
 
 
 class Robot:
-    """A home's obstacles in a pymunk space, and a body that moves among them, of many robots one after the other."""
+    """A home's obstacles in a pymunk space, and a body that is put where a robot is, one robot after the other."""
 
     def __init__(self, world, motion=Motion(), radius_m=ROBOT_RADIUS_M):  # noqa: B008 (frozen)
         self.motion = motion

@@ -74,7 +74,10 @@ def run(args):
 
 
 def jobs_of(out, settings, cells, todo, jobs, pool):
-    """A job for each of the cells to do; ValueError if one that is done was made from another net or classifier."""
+    """A job for each of the cells to do, home by home.
+
+    ValueError before the first of a home, if one that is done was made from another home, net or classifier
+    """
     for world, senses in prepare(out, settings, todo, jobs, pool):
         here = made_from(senses)
         for path in (path_of(out, cell.name) for cell in cells if cell.world == world and cell not in todo):

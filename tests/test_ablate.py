@@ -17,8 +17,9 @@ from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Rules
-from gnl.experiment import beyond_gap, to_bytes
+from gnl.experiment import to_bytes
 from gnl.files import write_whole
+from gnl.gaps import beyond_gap
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion

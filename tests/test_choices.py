@@ -18,10 +18,10 @@ SCORES = np.array([[0.0, 3, 1], [2, 0, 0]])
 
 def test_states_are_what_their_names_say():
     first = reciprocal_ranks(SCORES)
-    np.testing.assert_allclose(choices.probabilities(SCORES, None, None), softmax(SCORES), rtol=1e-6)
-    assert choices.best_place(SCORES, None, None).tolist() == [[0, 1, 0], [1, 0, 0]]
-    assert choices.with_last_action(SCORES, None, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
-    after = choices.with_last_action(SCORES, None, np.array([0, 2]))
+    np.testing.assert_allclose(choices.probabilities(SCORES, None, 0, None), softmax(SCORES), rtol=1e-6)
+    assert choices.best_place(SCORES, None, 0, None).tolist() == [[0, 1, 0], [1, 0, 0]]
+    assert choices.with_last_action(SCORES, None, 0, None)[:, 3:].tolist() == [[1, 0, 0, 0]] * 2
+    after = choices.with_last_action(SCORES, None, 1, np.array([0, 2]))
     np.testing.assert_array_equal(after[:, :3], first)
     assert after[:, 3:].tolist() == [[0, 1, 0, 0], [0, 0, 0, 1]]
 
@@ -32,24 +32,24 @@ def test_the_filter_ranks_places_by_all_their_particles_or_by_the_heaviest():
     particles.place, particles.weight = np.array([[0, 0, 1, 2]]), np.array([[0.3, 0.3, 0.4, 0.0]])
     by_sum, by_greatest = (next(c for c in CHOICES if c.other == f"the filter's ranks{kind}").rules.state
                            for kind in ("", ", max"))
-    np.testing.assert_array_equal(by_sum(SCORES[:1], particles, None), reciprocal_ranks([[0.6, 0.4, 0]]))
-    np.testing.assert_array_equal(by_greatest(SCORES[:1], particles, None), reciprocal_ranks([[0.3, 0.4, 0]]))
+    np.testing.assert_array_equal(by_sum(SCORES[:1], particles, 0, None), reciprocal_ranks([[0.6, 0.4, 0]]))
+    np.testing.assert_array_equal(by_greatest(SCORES[:1], particles, 0, None), reciprocal_ranks([[0.3, 0.4, 0]]))
 
 
 def test_finest_labels_are_those_of_the_whole_view_and_draw_the_same_luck():
     home, rng, again = drawn(1), np.random.default_rng(1), np.random.default_rng(1)
     poses, wanted = home.free_poses(3, np.random.default_rng(0)), np.array([True, False, True])
-    rgb, labels = choices.finest(home, poses, rng, 64, 1.0, wanted)
+    rgb, labels = choices.finest(home, poses, rng, 64, 0.5, wanted)
     np.testing.assert_array_equal(labels, true_labels(home, poses[wanted], 512))
-    np.testing.assert_array_equal(rgb, render(home, poses, again, 64, 1.0, wanted)[0])
+    np.testing.assert_array_equal(rgb, render(home, poses, again, 64, 0.5, wanted)[0])
     assert rng.random() == again.random()
     assert choices.finest(home, poses, rng, 64, 1.0)[1].shape == (3, 512, 512)
 
 
 def test_far_or_turned_is_beyond_the_gap_from_each_test_in_one_way_or_the_other():
-    tests = np.array([[0.0, 0, 0], [1, 0, np.pi]])
-    poses = np.array([[0.1, 0, 0.1], [0.1, 0, 1], [0.3, 0, 0], [1, 0.1, -3.1], [1, 0.1, 0]])
-    assert choices.far_or_turned(poses, tests, 0.2, 0.5).tolist() == [False, True, True, False, True]
+    tests = np.array([[0.0, 0, 1], [1, 0, np.pi]])
+    poses = np.array([[0.1, 0, 1.1], [0.1, 0, 2], [0.3, 0, 1], [1, 0.1, -3], [1, 0.1, 0], [0.25, 0, 1], [0, 0, 1.5]])
+    assert choices.far_or_turned(poses, tests, 0.25, 0.5).tolist() == [False, True, True, False, True, False, False]
 
 
 def test_corners_join_regions_that_sides_do_not():
@@ -89,10 +89,12 @@ def test_a_robot_of_two_actions_turns_left_and_goes_forward(two_rooms):
 
 
 def test_a_context_is_the_number_of_actions_done_and_the_last_of_them():
-    state = choices.WithContext()
-    seen = [state(SCORES, None, actions) for actions in (None, np.array([0, 2]), np.array([1, 1]), None)]
-    assert [s[:, -1].tolist() for s in seen] == [[0, 0], [5, 7], [10, 10], [0, 0]]
-    for s in seen:
+    steps = (0, None), (1, np.array([0, 2])), (2, np.array([1, 1]))
+    seen = [choices.with_context(SCORES, None, *step) for step in steps]
+    assert [s[:, -1].tolist() for s in seen] == [[0, 0], [5, 7], [10, 10]]
+    of_none = [choices.without_context(SCORES, None, *step) for step in steps]
+    assert [s[:, -1].tolist() for s in of_none] == [[0, 0]] * 3
+    for s in seen + of_none:
         np.testing.assert_array_equal(s[:, :-1], reciprocal_ranks(SCORES))
 
 

@@ -32,7 +32,8 @@ class Diary:
 def test_the_store_is_told_each_step_with_the_right_reward(score, reward):
     diary, told = Diary(), []
 
-    def state(scores, particles, actions):
+    def state(scores, particles, step, actions):
+        assert step == len(told)
         told.append((scores, actions))
         return reciprocal_ranks(scores)
 

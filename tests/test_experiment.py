@@ -11,7 +11,7 @@ import pytest
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
 from gnl import episode, experiment, planners
-from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, beyond_gap, run_cell, to_bytes
+from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
 from gnl.gcn import GCN
 from gnl.learned import digest, fingerprint
 from gnl.options import Options
@@ -182,20 +182,3 @@ def test_each_cell_has_numbers_and_a_name_of_its_own():
     cells = [Cell(*of) for of in itertools.product((800, 801), GAPS_M, GAPS_DEG, (0, 1))]
     assert len({cell.name for cell in cells}) == len({tuple(cell.entropy) for cell in cells}) == len(cells)
     assert Cell(800, 0.2, 10, 0).name == "800-0.2m-10deg-seed0"
-
-
-def test_the_gap_is_a_matter_of_the_nearest_test_start_alone():
-    tests = np.array([[0.0, 0, 0], [1.0, 0, np.pi]])
-    poses = np.array([[0.3, 0, 1.0], [0.3, 0, 0.1], [0.1, 0, 1.0], [0.8, 0, 3.0], [0.7, 0, 0.0], [0.3, 0, -3.1]])
-    assert beyond_gap(poses, tests, 0.2, 0.5).tolist() == [True, False, False, False, True, True]
-
-
-def test_what_is_just_as_far_as_the_gap_is_not_beyond_it():
-    poses = np.array([[0.25, 0, 1.0], [0.5, 0, 0.5], [0.5, 0, 1.0]])
-    assert beyond_gap(poses, np.zeros((1, 3)), 0.25, 0.5).tolist() == [False, False, True]
-
-
-def test_bearings_are_compared_around_the_circle():
-    tests = np.array([[0.0, 0, np.pi - 0.05]])
-    poses = np.array([[1.0, 0, -np.pi + 0.1], [1.0, 0, -np.pi + 0.5]])
-    assert beyond_gap(poses, tests, 0.5, 0.2).tolist() == [False, True]

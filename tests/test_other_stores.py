@@ -29,27 +29,32 @@ def test_neighbours_of_any_action_are_the_nearest_in_state_and_action():
     np.testing.assert_allclose(store.q_values(states[:1]), [[one, two]])  # met before
     np.testing.assert_allclose(store.q_values(states[1:2]), [[three, (two + three + four + five) / 4]])
     assert store.q_values(states).shape == (4, 2)
+    store.learn(states[:1], np.array([0]), np.array([0.0]), states[1:2], np.array([False]))  # and it looks ahead
+    ahead = max(three, (two + three + four + five) / 4)
+    np.testing.assert_allclose(store.q_values(states[:1])[0, 0], one + 0.1 * (0.9 * ahead - one))
 
 
 def test_neighbours_are_drawn_towards_pairs_of_the_same_context_and_action():
-    """By hand: a pull of 12 beside k = 4, rankings at their places, contexts 0 and 2; alpha is 0.1."""
+    """By hand: a pull of 12 beside k = 3; three rankings, contexts 0 and 2, two actions; alpha is 0.1, gamma 0.9."""
     ranks = reciprocal_ranks(np.eye(4)[:3])
     first, second, third = (np.append(r, 0)[None].astype(np.float32) for r in ranks)
-    later = third.copy()
-    later[:, -1] = 2
-    store, done = Shrunk(4, 1, pull=12), np.array([True])
-    for state, reward in ((first, 10.0), (second, 0.0), (later, 5.0)):
-        store.learn(state, np.array([0]), np.array([reward]), state, done)
-    # 1, then 1 less a tenth of it, then their mean 0.95 a tenth of the way to 5
-    one, two, three = 1.0, 0.9, 0.95 + 0.1 * (5 - 0.95)
-    alone = np.concatenate([first, second, later])
-    of_context = np.array([(one + two) / 2] * 2 + [three])
-    np.testing.assert_allclose(store.q_values(alone)[:, 0], (4 * np.array([one, two, three]) + 12 * of_context) / 16)
-    store.learn(first, np.array([0]), np.array([0.0]), later, ~done)  # what comes after is drawn towards its kind, too
-    after = one + 0.1 * (0.9 * three - one)
-    np.testing.assert_allclose(store.q_values(first)[:, 0], (4 * after + 12 * (after + two) / 2) / 16)
-    never = np.append(ranks[0], 1)[None].astype(np.float32)  # a context in which nothing was met
-    np.testing.assert_allclose(store.q_values(never)[:, 0], 4 * after / 16)
+    late = np.append(ranks[2], 2)[None].astype(np.float32)
+    store, done = Shrunk(4, 2, pull=12), np.array([True])
+    store.k = 3
+    for state, action, reward in ((first, 0, 10.0), (second, 0, 0.0), (late, 0, 5.0), (first, 1, -10.0)):
+        store.learn(state, np.array([action]), np.array([reward]), state, done)
+    # 1, then 1 less a tenth of it, then their mean 0.95 a tenth of the way to 5; and of action 1 a pair of its own
+    one, two, three, other = 1.0, 0.9, 0.95 + 0.1 * (5 - 0.95), -1.0
+    all_three, early = np.concatenate([first, second, late]), (one + two) / 2
+    q = (3 * np.array([one, two, three]) + 12 * np.array([early, early, three])) / 15
+    np.testing.assert_allclose(store.q_values(all_three)[:, 0], q)
+    np.testing.assert_allclose(store.q_values(all_three)[:, 1], [other, other, 3 * other / 15])  # never in context 2
+    store.learn(first, np.array([0]), np.array([0.0]), late, ~done)  # the best of what comes after is drawn, too
+    one += 0.1 * (0.9 * three - one)
+    np.testing.assert_allclose(store.q_values(first)[:, 0], (3 * one + 12 * (one + two) / 2) / 15)
+    store.learn(third, np.array([0]), np.array([three]), third, done)  # met in another context: now it is of that
+    np.testing.assert_allclose(store.q_values(late)[:, 0], 3 * three / 15)
+    np.testing.assert_allclose(store.q_values(second)[:, 0], (3 * two + 12 * (one + two + three) / 3) / 15)
 
 
 def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():

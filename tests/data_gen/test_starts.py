@@ -4,16 +4,15 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from data_gen import starts as starts_module
 from data_gen.__main__ import main
 from data_gen.rooms import make_home
-from data_gen.starts import draw_starts, starts_of, training_starts
+from data_gen.starts import draw_starts, starts_of
+from gnl import gaps
 from gnl.canvas import BELIEF, ROBOT
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
 from gnl.files import load_arrays
-from gnl.places import wrap_angle
 from gnl.world import World
 from tests.conftest import room
 
@@ -23,7 +22,7 @@ N_TESTS = 100
 @pytest.fixture(autouse=True)
 def fewer_at_once(monkeypatch):
     """And in this process; test_table.py draws starts in others."""
-    monkeypatch.setattr(starts_module, "DRAWN_AT_ONCE", 20_000)
+    monkeypatch.setattr(gaps, "DRAWN_AT_ONCE", 20_000)
     monkeypatch.setattr(starts_module, "processes", ThreadPoolExecutor)
 
 
@@ -63,19 +62,6 @@ def test_there_are_starts_just_beyond_the_gap_so_it_is_not_larger_than_said():
     assert np.degrees(turn.min()) < 50.2
 
 
-def test_training_starts_are_uniform_but_for_the_gap():
-    """In an empty room with one test start: equal areas and equal angles beyond the gap get equal shares."""
-    home, tests = World(room(size=(6.0, 4.0))), np.array([[3.0, 2.0, 0.5]])
-    starts = training_starts(home, tests, 0.5, np.radians(60), 20_000, np.random.default_rng(1))
-    turned = (starts[:, 2] - 0.5) % (2 * np.pi)
-    assert stats.kstest(turned, stats.uniform(np.pi / 3, 4 * np.pi / 3).cdf).pvalue > 1e-3
-    x, y = np.meshgrid(np.arange(0.05, 6, 0.1), np.arange(0.05, 4, 0.1), indexing="ij")
-    area = home.is_reachable(np.stack([x, y], -1).reshape(-1, 2)).reshape(x.shape) & (np.hypot(x - 3, y - 2) > 0.5)
-    expected = area.reshape(6, 10, 4, 10).sum((1, 3)).ravel()  # of each square metre, what is free and beyond the gap
-    found = np.histogram2d(starts[:, 0], starts[:, 1], [np.arange(7), np.arange(5)])[0].ravel()
-    assert (abs(found / len(starts) - expected / expected.sum()) < 0.012).all()
-
-
 def test_test_starts_are_drawn_before_all_else_and_do_not_depend_on_the_gap():
     home = make_home(800)
     near, far = (draw_starts(home, t, 0.2, 20, 7, 3, np.random.default_rng(5)) for t in (0.2, 1.0))
@@ -105,42 +91,12 @@ def test_a_gap_that_a_home_has_no_room_for_is_refused_with_the_share_that_was_se
         draw_starts(home, 3.0, np.radians(10), 10, 5, 1, np.random.default_rng(0))
 
 
-def test_a_gap_that_few_poses_are_beyond_is_tried_for_as_long_as_poses_do_turn_up(monkeypatch):
-    monkeypatch.setattr(starts_module, "DRAWN_AT_ONCE", 500)
-    home, tests = World(room()), np.array([[3.0, 2.0, 0.0]])
-    assert len(training_starts(home, tests, 0.0, np.radians(170), 100, np.random.default_rng(0))) == 100
-    monkeypatch.setattr(starts_module, "FEWEST", 0.1)
-    with pytest.raises(ValueError, match=r"found \d+ among \d+ poses drawn"):
-        training_starts(home, tests, 0.0, np.radians(170), 100, np.random.default_rng(0))
-
-
-def test_who_learns_starts_only_where_one_can_get_to(two_rooms_plan):
-    two_rooms_plan["doors"][1]["state"] = "closed"
-    home, tests = World(two_rooms_plan), np.array([[1.0, 2.0, 0.0]])
-    starts = training_starts(home, tests, 0.1, 0.1, 500, np.random.default_rng(0))
-    assert home.is_reachable(starts[:, :2]).all()
-    others = np.random.default_rng(0).uniform((0, 0), (7, 4), (2000, 2))
-    assert (home.is_free(others) & ~home.is_reachable(others)).any()
-
-
 def test_a_picture_shows_both_kinds_of_starts_where_they_are():
     home, along = World(room()), np.linspace(0.5, 3.5, 9)
     training, tests = (np.stack([np.full(9, x), along, along], 1) for x in (1.0, 5.0))
     pixels = np.array(starts_module.picture(home, {"training": training, "tests": tests}))
     violet, orange = (np.nonzero((pixels[60:] == colour).all(2))[1] for colour in (BELIEF, ROBOT))
     assert violet.max() < pixels.shape[1] / 2 < orange.min()
-
-
-def test_no_pose_is_turned_by_more_than_half_a_circle():
-    home = World(room())
-    with pytest.raises(ValueError, match="found 0 among"):
-        training_starts(home, home.free_poses(3, np.random.default_rng(0)), 0.0, np.pi, 1, np.random.default_rng(0))
-
-
-def test_few_tests_leave_room_in_a_bearing_of_their_own():
-    home, tests = World(room()), np.array([[3.0, 2.0, 0.0]])
-    starts = training_starts(home, tests, 0.0, np.radians(179), 50, np.random.default_rng(0))
-    assert (abs(wrap_angle(starts[:, 2] - np.pi)) < np.radians(1) + 1e-9).all()
 
 
 def test_a_home_is_drawn_with_its_starts_and_again_if_it_is_lost(tmp_path):

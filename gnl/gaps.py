@@ -1,0 +1,39 @@
+"""The gap between poses where one learns and poses where one is tested (section III, "cross-view").
+
+    T_xy [m], T_theta [rad]   the gap     poses (n, 3), tests (m, 3): x [m], y [m], theta [rad]
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .places import wrap_angle
+
+DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
+
+
+def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
+    """Whether each pose is farther than T_xy from the nearest test start, and turned by more than T_theta from it."""
+    # CHOICE: the nearest test start is the nearest in location; both differences are against that one.
+    distance, nearest = cKDTree(tests[:, :2]).query(poses[:, :2])
+    turned = abs(wrap_angle(poses[:, 2] - tests[nearest, 2]))
+    return (distance > t_xy_m) & (turned > t_theta_rad)
+
+
+def poses_beyond(world, tests, t_xy_m, t_theta_rad, n, rng, gap=beyond_gap):
+    """n poses uniform over the free space beyond the gap from the tests: (n, 3).
+
+    gap : which poses are, a function like `beyond_gap`
+
+    ValueError with the share of poses that would do, if a home has too little of it
+    """
+    found, drawn = [], 0
+    while sum(map(len, found)) < n:
+        poses = rng.uniform((*world.bounds[:2], -np.pi), (*world.bounds[2:], np.pi), (DRAWN_AT_ONCE, 3))
+        poses = poses[gap(poses, tests, t_xy_m, t_theta_rad)]
+        found.append(poses[world.is_reachable(poses[:, :2])])
+        drawn += DRAWN_AT_ONCE
+        if sum(map(len, found)) < FEWEST * drawn:
+            raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
+                             f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
+                             f"among {drawn} poses drawn, {sum(map(len, found)) / drawn:.3%}")
+    return np.concatenate(found)[:n]
