@@ -19,7 +19,6 @@ from gnl.compare import paired_difference
 from gnl.episode import Rules
 from gnl.experiment import to_bytes
 from gnl.files import write_whole
-from gnl.gaps import beyond_gap
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion
@@ -54,35 +53,40 @@ def test_every_choice_runs_and_leaves_no_trace(choice, parts):
     assert here == constants()
 
 
+def west(poses, tests, t_xy_m, t_theta_rad):
+    """A gap of its own, which sees that it is asked about this cell's."""
+    assert (len(tests), t_xy_m, t_theta_rad) == (8, CELL.t_xy_m, np.radians(CELL.t_theta_deg))
+    return poses[:, 0] < 4
+
+
+def east(*of):
+    return ~west(*of)
+
+
 OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Motion(forward_m=1.0), true_labels=True,
                anew=True, constants={"camera.HEIGHT_M": 0.7}, of_training={"episode.SIDE_BY_SIDE": 3}, luck=2,
-               of_gcn={"n_views": 7, "epochs": 9}, views_beyond=beyond_gap, starts_beyond=beyond_gap)
+               of_gcn={"n_views": 7, "epochs": 9}, views_beyond=west, starts_beyond=east)
 
 
 @pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
 def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, parts, monkeypatch):
     senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
-    home = senses.world
-
-    def beyond(poses):
-        return beyond_gap(poses, starts["tests"], CELL.t_xy_m, np.radians(CELL.t_theta_deg))
-
     gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
     def learn_places(senses, grid, n_views, seed, draw, **how):
         learnt.append((senses.net, n_views, seed, how))
         if draw:
             poses = draw(50, np.random.default_rng(3))
-            assert len(poses) == 50
-            assert beyond(poses).all()
-            assert home.is_free(poses[:, :2], ROBOT_RADIUS_M).all()
+            assert (len(poses), (poses[:, 0] < 4).all()) == (50, True)
+            assert senses.world.is_free(poses[:, :2], ROBOT_RADIUS_M).all()
         return "another GCN"
 
     def train_nnql(senses, robot, grid, poses, seed, rules, store):
         trained.append((senses.net, senses.gcn, robot.motion, rules, camera.HEIGHT_M))
         assert store.k == choice.store.get("k", nnql.K_NEIGHBOURS)
         assert (poses is starts["training"]) == (choice is OURS)
-        assert (len(poses), beyond(poses).all()) == (12, True)
+        assert len(poses) == 12
+        assert choice is OURS or (poses[:, 0] >= 4).all()
         there = choice.of_training.get("episode.SIDE_BY_SIDE", at_once)
         assert there == episode.SIDE_BY_SIDE
         tested.append(seed.spawn_key)
@@ -152,7 +156,9 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
             changed = {name: value for name, value in constants().items() if value != here[name]}
             assert len(changed) == len(choice.constants | choice.of_training)
         of_view = any(name.startswith(("camera.", "strip.")) for name in choice.constants)
+        of_view |= any(name.startswith("senses.") for name in choice.constants)  # and none's labels take their place
         assert choice.true_labels >= of_view  # no net knows such views
+        assert choice.anew or not (choice.of_gcn or choice.views_beyond)
         changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck,
                         choice.anew and choice.luck, choice.of_gcn, choice.views_beyond, choice.starts_beyond))
         assert choice.store.get("k") != nnql.K_NEIGHBOURS

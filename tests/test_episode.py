@@ -183,16 +183,19 @@ def test_many_episodes_are_their_groups_one_after_the_other(monkeypatch):
 
 
 def test_many_episodes_say_how_far_they_are_and_how_many_were_right_in_the_end(monkeypatch):
+    rng, told = np.random.default_rng(0), []
+
+    def made_up(_senses, _robot, _grid, _plan, group, _seed):
+        answers = rng.integers(2, size=(len(group), 5))
+        ones = np.ones_like(answers)
+        return Record(poses=ones, actions=ones, answers=answers, places=ones, belief=ones)
+
     monkeypatch.setattr(episode, "SIDE_BY_SIDE", 4)
-    told, looks = [], []
-
-    def right_in_the_first_group(poses):
-        looks.append(poses)
-        return (knows if len(looks) <= 5 else mistakes)(poses)
-
-    run_all(Sense(right_in_the_first_group), Glide(), GRID, planners.chance, starts(10), 3,
-            lambda share, right: told.append((share, right)))
-    np.testing.assert_allclose(told, [(1 / 3, 1), (2 / 3, 4 / 7), (1, 4 / 10)])
+    monkeypatch.setattr(episode, "run", made_up)
+    record = run_all(None, None, None, None, starts(10), 3, lambda share, right: told.append((share, right)))
+    right = record.correct[:, -1]
+    np.testing.assert_allclose(told, [(n / 3, right[:end].mean()) for n, end in ((1, 4), (2, 7), (3, 10))])
+    assert 0 < right.mean() < 1
 
 
 def test_the_likelihood_is_a_probability_and_a_floor_below_it():

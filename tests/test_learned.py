@@ -198,6 +198,22 @@ def test_what_is_seen_from_a_pose_is_learnt_as_the_place_of_that_pose(parts, mon
     assert helper.given == helped
 
 
+def test_places_are_learnt_from_the_poses_that_are_drawn_for_it(parts, monkeypatch):
+    senses, grid, _ = parts
+    taught, asked = [], []
+    monkeypatch.setattr(gcn, "train", lambda network, graphs, places, *_, **how: taught.append((graphs, places)))
+
+    def draw(n, rng):
+        asked.append((n, rng.random()))
+        return STARTS[:n]
+
+    learned.learn_places(senses, grid, len(STARTS), 5, draw=draw)
+    ((graphs, places),) = taught
+    np.testing.assert_array_equal(places, grid.place_of(STARTS))
+    np.testing.assert_array_equal(graphs.words, senses.look(STARTS, np.random.default_rng(0)).words)
+    assert asked == [(len(STARTS), np.random.default_rng(5).random())]
+
+
 def test_one_view_alone_needs_no_helper(parts):
     def nobody(*_):
         raise AssertionError("asked for help")

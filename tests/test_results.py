@@ -1,5 +1,8 @@
 """The full run: all cells are there, and what pages say of it is what the cells say."""
 
+import ast
+import importlib
+import inspect
 import json
 import re
 from pathlib import Path
@@ -20,6 +23,36 @@ def row(text, first):
     """The other cells of the first table row whose first one is this."""
     table = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
     return next(cells[1:] for cells in table if cells[0] == first)
+
+
+def test_the_programs_of_the_page_ask_for_what_there_is():
+    """They run for half an hour each; here it is looked up that all names which they take from gnl are still there."""
+    programs = re.findall(r"```py\n(.*?)```", (RESULTS / "README.md").read_text(), re.DOTALL)
+    assert len(programs) == 3
+    there = {}
+    for tree in map(ast.parse, programs):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module.startswith("gnl"):
+                module = importlib.import_module(node.module)
+                for alias in node.names:
+                    there[alias.name] = getattr(module, alias.name, None) or importlib.import_module(
+                        f"{node.module}.{alias.name}")
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in there:
+                assert hasattr(there[node.value.id], node.attr), f"{node.value.id}.{node.attr}"
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in there:
+                called = there[ast.unparse(node.func)]
+                inspect.signature(called).bind(*node.args, **{k.arg: k.value for k in node.keywords})
+
+
+def test_of_the_effects_of_open_points_as_many_miss_zero_as_is_said():
+    page = (RESULTS.parent / "open_points.md").read_text()
+    table = "".join(line.rpartition(" | ")[2] for line in page.splitlines(keepends=True) if line.startswith("| "))
+    bounds = np.array(re.findall(r"(?:MV|(?<!- )Ours) [+-][\d.]+ \[([+-][\d.]+), ([+-][\d.]+)\]", table), float)
+    miss = (bounds[:, 0] > 0) | (bounds[:, 1] < 0)
+    words = " ".join(page.split())
+    assert f"of the {len(bounds)} intervals of MV and Ours" in words
+    assert f"by chance; {miss.sum()} do." in words
 
 
 def test_every_cell_of_the_paper_is_there_at_its_scale():
