@@ -208,10 +208,10 @@ CHOICES = [
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
     *(Choice("mean of the neighbours", other + (f", seed {n}" if n else ""), Rules(state=state),
-             constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n) for n in range(5) for other, state, pull in (
-                 ("and, as 64 more, that of step and last action", with_context, 64),
-                 ("that of step and last action alone", with_context, 1e9),
-                 ("and, as 64 more, that of the action", without_context, 64))),
+             constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n)
+      for other, state, pull in (("and, as 64 more, that of step and last action", with_context, 64),
+                                 ("that of step and last action alone", with_context, 1e9),
+                                 ("and, as 64 more, that of the action", without_context, 64)) for n in range(5)),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),
