@@ -41,8 +41,9 @@ def test_the_programs_of_the_page_ask_for_what_there_is():
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in there:
                 assert hasattr(there[node.value.id], node.attr), f"{node.value.id}.{node.attr}"
             if isinstance(node, ast.Call) and ast.unparse(node.func) in there:
-                called = there[ast.unparse(node.func)]
-                inspect.signature(called).bind(*node.args, **{k.arg: k.value for k in node.keywords})
+                called, spread = there[ast.unparse(node.func)], any(isinstance(arg, ast.Starred) for arg in node.args)
+                bind = inspect.signature(called).bind_partial if spread else inspect.signature(called).bind
+                bind(*node.args, **{k.arg: k.value for k in node.keywords})
 
 
 def test_of_the_effects_of_open_points_as_many_miss_zero_as_is_said():
