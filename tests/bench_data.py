@@ -46,7 +46,8 @@ def plain_filter(grid, likelihood, rng, resample):
         poses[:, 2] += turn
         poses += rng.normal(0, (STD[0], STD[0], STD[1]), poses.shape)
         place = grid.place_of(poses)
-        weight = likelihood[place] / likelihood[place].sum()
+        weight = likelihood[place]  # all weighed the same before
+        weight /= weight.sum()
         return np.bincount(place, weight, grid.n_places)
 
     return cycle
