@@ -125,16 +125,16 @@ def side_by_side(starts):
     return np.array_split(starts, -(-len(starts) // SIDE_BY_SIDE))
 
 
-def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1000, store=None, watch=None,
+def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=None, store=None, watch=None,
                progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    A checkpoint is taken when the robots that pass it, side by side, have come to their ends.
+    checkpoint_every : so many episodes, which end before the next begin; no checkpoints if not given
     store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`;
     the rules' reward gets what happened, too, and `done`, whether nothing comes after
     progress(share done, recent share of right answers)
     """
-    if checkpoint_every < 1:
+    if checkpoint_every is not None and checkpoint_every < 1:
         raise ValueError(f"checkpoint_every: expected at least 1 episode, found {checkpoint_every}")
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
@@ -146,13 +146,15 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=1
         if watch:
             watch(step, seen=seen, actions=actions, states=states, **others)
 
-    groups, done, recent = side_by_side(starts), 0, []
+    moments = range(checkpoint_every, len(starts), checkpoint_every) if checkpoint_every else ()
+    groups = [group for stretch in np.split(starts, moments) for group in side_by_side(stretch)]
+    done, recent = 0, []
     for group, child in zip(groups, _seed(seed).spawn(len(groups)), strict=True):
         episodes = np.arange(done, done + len(group))
         plan = planners.explore(store, nnql.epsilon(episodes))
         record = run(senses, robot, grid, plan, group, child, rules, learn)
         done += len(group)
-        while (len(store.log) + 1) * checkpoint_every <= done:
+        if checkpoint_every and done % checkpoint_every == 0:
             store.checkpoint()
         recent = [*recent[-9:], record.correct[:, -1].mean()]
         if progress:

@@ -87,7 +87,7 @@ def test_training_explores_first_then_keeps_checkpoints_and_says_how_far_it_is()
     learner = train_nnql(Sense(knows), Glide(), GRID, starts(100), 0, checkpoint_every=40,
                          progress=lambda share, right: told.append((share, right)))
     assert len(learner.log) == 2  # after 40 and 80 episodes
-    assert [share for share, _ in told] == [0.5, 1.0]
+    assert [share for share, _ in told] == [0.4, 0.8, 1.0]
     assert {right for _, right in told} == {1.0}
     stored = sum(len(values) for values in learner.values)
     assert 0 < stored <= 100 * episode.LENGTH
@@ -104,12 +104,14 @@ def test_an_episode_is_the_less_left_to_chance_the_more_came_before_it():
         assert count == pytest.approx(expected, abs=4 * np.sqrt(expected))
 
 
-def test_a_checkpoint_is_due_after_every_so_many_episodes_and_taken_when_their_group_is_done(monkeypatch):
+def test_at_a_checkpoint_so_many_episodes_have_ended_and_the_next_have_not_begun(monkeypatch):
     monkeypatch.setattr(episode, "SIDE_BY_SIDE", 4)
-    for every, taken in ((2, [4, 4, 8, 8]), (4, [4, 8]), (3, [4, 8]), (8, [8]), (9, [])):  # steps learned by then
+    for every, sizes, groups in ((2, [2] * 4, [1, 2, 3, 4]), (3, [3, 3, 2], [1, 2]), (4, [4, 4], [1, 2]),
+                                 (5, [3, 2, 3], [2]), (8, [4, 4], [2]), (9, [4, 4], []), (None, [4, 4], [])):
         diary = Diary()
         train_nnql(Sense(knows), Glide(), GRID, starts(8), 0, checkpoint_every=every, store=diary)
-        assert diary.log == taken
+        assert [len(actions) for _, actions, *_ in diary.steps[::episode.LENGTH]] == sizes
+        assert diary.log == [episode.LENGTH * n for n in groups]  # steps learned by then
 
 
 def test_the_share_of_right_answers_that_is_told_is_that_after_the_last_look_of_the_last_ten_groups(monkeypatch):
