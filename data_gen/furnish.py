@@ -19,7 +19,7 @@ from gnl.world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M, WALL_THICKNESS_M
 from .box import Box, distance, hits, inside, outline, overlap, seen, shift, turned
 from .furniture import PIECES, ROOMS
 
-TRIES = 8  # CHOICE: more tries fill the last corners and cost time
+TRIES = 8  # for each piece; more would fill the last corners and cost time
 BACK_M, MARGIN_M = 0.07, 0.06  # least distance to a wall's centre line: of a piece's back, of anything
 FRONT_M = 0.5  # kept free before what stands at a wall, for doors, drawers and knees
 CELL_M = 0.1

@@ -20,7 +20,7 @@ from gnl.terminal import Stage
 from .rooms import make_home
 
 # DIFFERS: the net learns from homes of the same kind as those where it is used; the paper's from photographs (ADE20K).
-CLASSES_IN_VIEW, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
+KINDS, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
 
 MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # that decide what there is to see
@@ -33,11 +33,12 @@ def add_arguments(parser):
     parser.add_argument("--views", type=int, default=2400)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
+    parser.add_argument("--kinds", type=int, default=KINDS, help=f"least kinds of things in each view ({KINDS})")
 
 
 def run(args):
     """Views of many homes and their true labels, unless the file has just these already."""
-    made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise,
+    made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise, "kinds": args.kinds,
                "code": digest([code(), code(Path(__file__).parent, MODULES)])}
     if Path(args.out).exists():
         there = load_arrays(args.out)[1]
@@ -46,13 +47,13 @@ def run(args):
         if not isinstance(there, dict) or not {"homes", "views"} <= there.keys():
             raise ValueError(f"{args.out}: expected views or nothing, found a file made by {there}")
     stage = Stage("homes")
-    rgb, labels = training_views(args.homes, args.views, args.seed, args.noise, stage)
+    rgb, labels = training_views(args.homes, args.views, args.seed, args.noise, args.kinds, stage)
     save_arrays(args.out, made_by, rgb=rgb, labels=labels)
     stage.done(f"{args.homes} furnished homes drawn, {args.views} views rendered to learn from")
 
 
-def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
-    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with three classes that fill 1 %.
+def training_views(n_homes, n_views, seed, noise=1.0, n_kinds=KINDS, progress=None):
+    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with n_kinds classes that fill 1 %.
 
     returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
     """
@@ -62,6 +63,8 @@ def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
         raise ValueError(f"views: expected at least 1, found {n_views}")
     if seed < 0:
         raise ValueError(f"seed: expected at least 0, found {seed}")
+    if not 1 <= n_kinds <= KINDS:
+        raise ValueError(f"kinds: expected 1..{KINDS}, found {n_kinds}")
     check_noise(noise)
     rng, rgb, labels = np.random.default_rng(seed), [], []
     for home in range(n_homes):
@@ -70,7 +73,7 @@ def training_views(n_homes, n_views, seed, noise=1.0, progress=None):
         while found < wanted:
             image, label = render(world, world.free_poses(2 * wanted, rng), rng, SIZE_PX, noise)
             seen = (label.reshape(len(label), -1, 1) == np.arange(N_CLASSES)).sum(1) >= LEAST_SHARE * SIZE_PX ** 2
-            good = np.flatnonzero(seen.sum(1) >= CLASSES_IN_VIEW)[:wanted - found]
+            good = np.flatnonzero(seen.sum(1) >= n_kinds)[:wanted - found]
             rgb.append(image[good])
             labels.append(label[good])
             found += len(good)

@@ -21,12 +21,13 @@ from .compare import in_points, paired_difference
 from .experiment import Cell, costs, costs_of, now, to_bytes
 from .files import check_folder, load_json, write_whole
 from .gaps import poses_beyond
+from .groundwork import load_starts, prepare, taught_net
 from .outcomes import answers, outcomes
 from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, finished, load_starts, path_of, prepare, run_jobs
+from .table import Settings, agree, finished, path_of, run_jobs
 from .terminal import executor
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
@@ -62,8 +63,10 @@ def run(args):
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
             starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
-            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS)
-                           for name, (choice, cell) in todo.items()], SETTINGS.episodes, pool, "ablate")
+            nets = {choice.other: taught_net(out, SETTINGS, **choice.of_net) for choice in chosen if choice.of_net}
+            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS,
+                            choice.of_net and nets[choice.other]) for name, (choice, cell) in todo.items()],
+                     SETTINGS.episodes, pool, "ablate")
     if len(todo) < len(jobs):
         print(f"{len(jobs) - len(todo)} of {len(jobs)} runs were there before, in {out / 'cells'}")
     measured = effects(out, chosen)
@@ -96,15 +99,14 @@ def name_of(choice, cell):
     return "-".join(re.findall(r"[\w.]+", f"{choice.point} {choice.other}")) + f"-{cell.name}"
 
 
-def measure(choice, cell, senses, starts, settings):
-    """Outcomes of MV and of Ours under a choice, and what they cost."""
+def measure(choice, cell, senses, starts, settings, net=None):
+    """Outcomes of MV and of Ours under a choice, and what they cost; `net` in the place of that of the senses."""
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
     senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
     beyond = partial(poses_beyond, senses.world, starts["tests"], cell.t_xy_m, np.radians(cell.t_theta_deg))
     with in_place(choice.constants):
-        if choice.true_labels:
-            senses.net = None
+        senses.net = None if choice.true_labels else net or senses.net
         if choice.anew:
             how = {"n_views": settings.gcn_views, "epochs": settings.gcn_epochs, "batch": settings.gcn_batch,
                    "rate": settings.gcn_rate, "draw": choice.views_beyond and partial(beyond, gap=choice.views_beyond)}

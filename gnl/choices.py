@@ -38,6 +38,7 @@ class Choice:
     of_training: dict = field(default_factory=dict)  # constants while NNQL learns
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
+    of_net: dict = field(default_factory=dict)  # options of `python -m data_gen views`: a net that learned from others
     anew: bool = False  # the GCN is learned anew; the next two are how
     of_gcn: dict = field(default_factory=dict)  # other arguments of learned.learn_places
     views_beyond: Callable | None = None  # it sees views from beyond the gap from the tests, as gaps.beyond_gap, alone
@@ -167,6 +168,8 @@ CHOICES = [
            anew=True),
     Choice("size of the net's view", "512 x 512, true labels", constants={"senses.render": finest}, true_labels=True,
            anew=True),
+    Choice("pictures of the net", "clean drawings", of_net={"noise": 0.0}, anew=True),
+    Choice("training views of the net", "any view", of_net={"kinds": 1}, anew=True),
     Choice("region", "8-connected", constants={"scene_graph.regions": touching_at_corners}, anew=True),
     Choice("edges", "none", constants={"scene_graph.FARTHEST_EDGE_PX": -1.0}, anew=True),
     Choice("width of the GCN", "256", constants={"gcn.GCN": partial(GCN, hidden=256)}, anew=True),

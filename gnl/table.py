@@ -1,23 +1,18 @@
 """Table I: all cells on all cores, each finished one a file; a run that was stopped goes on where it was."""
 
 import os
-import subprocess
 import sys
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
-from . import learned
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, made_from, run_cell, to_bytes
-from .files import check_folder, load_arrays, load_json, write_whole
+from .files import check_folder, load_json, write_whole
 from .gcn import BATCH, EPOCHS, RATE
+from .groundwork import check_settings, load_starts, prepare
 from .paper import WORLDS
 from .photo import check_noise
-from .senses import Senses
 from .terminal import Stage, executor
-from .world import World
 
 GAPS = tuple(f"{m}/{deg}" for m in GAPS_M for deg in GAPS_DEG)
 
@@ -111,39 +106,6 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
     stage.done(f"{n_jobs} cells of {n_episodes} episodes each")
 
 
-def prepare(out, settings, cells, jobs, pool):
-    """What the cells share: homes and starts, drawn by a program of their own, the net, a GCN for each world.
-
-    Yields (world, Senses) as soon as the world's GCN is learned.
-    """
-    data, worlds = out / "data", sorted({cell.world for cell in cells})
-    views, homes = data / "views.npz", {world: data / f"home-{world}.json" for world in worlds}
-    programs = [] if views.exists() else [["views", views, "--homes", settings.net_homes, "--views",
-                                           settings.net_views, "--noise", settings.noise]]
-    lacking = [cell for cell in cells if not (homes[cell.world].exists() and starts_of(out, cell).exists())]
-    if lacking:
-        names = [part for cell in lacking for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
-        programs.append(["starts", data, *names, "--training", settings.episodes, "--tests", settings.tests,
-                         "--validation", settings.validation, "--jobs", jobs])
-    for program in programs:
-        status = subprocess.run([sys.executable, "-m", "data_gen", *map(str, program)]).returncode
-        if status:
-            sys.exit(status)  # it has said why
-
-    stage = Stage("net")
-    pictures, made_by = learned.load_views(views)
-    check_settings(views, made_by, {"homes": settings.net_homes, "views": settings.net_views, "noise": settings.noise})
-    net = learned.segmentation_net(out / "learned", pictures, made_by, settings.net_epochs, seed=0, stage=stage)
-    stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
-    stage = Stage("gcn")
-    senses = {world: Senses(_load_home(homes[world], world), net, None, settings.noise) for world in worlds}
-    how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
-    made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
-    for world, gcn in learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how):
-        yield world, replace(senses[world], gcn=gcn)
-    stage.done(f"places of {len(worlds)} home{'s' * (len(worlds) > 1)}, {settings.gcn_views} views of each")
-
-
 def check(args):
     """Settings and cells of the command line; ValueError for what cannot be."""
     settings = QUICK if args.quick else Settings()
@@ -187,14 +149,6 @@ def agree(out, settings):
         check_settings(path, load_json(path, "settings"), settings)
 
 
-def check_settings(path, there, settings):
-    """ValueError with the name of a setting that is another one in a file of results."""
-    for name, value in settings.items():
-        if there.get(name) != value:
-            raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
-                             "name another folder with --out")
-
-
 def finished(out, name, load, settings=None):
     """Whether both files of a cell are there and load(path) finds them whole, and of these settings.
 
@@ -219,28 +173,3 @@ def finished(out, name, load, settings=None):
 def path_of(out, name):
     """The file of a cell's outcomes."""
     return Path(out) / "cells" / f"{name}.json"
-
-
-def starts_of(out, cell):
-    """The file of a cell's start poses."""
-    return Path(out) / "data" / f"starts-{cell.name}.npz"
-
-
-def load_starts(out, cell, settings):
-    """A cell's start poses; ValueError if they are not as many as the settings say."""
-    starts, _ = load_arrays(path := starts_of(out, cell))
-    wanted = {"training": (settings.episodes, 3), "tests": (settings.tests, 3), "validation": (settings.validation, 3)}
-    found = {name: poses.shape for name, poses in starts.items()}
-    if found != wanted:
-        raise ValueError(f"{path}: expected start poses {wanted}, found {found}")
-    if not all(np.isfinite(poses).all() for poses in starts.values()):
-        raise ValueError(f"{path}: expected start poses of finite numbers, found others")
-    return starts
-
-
-def _load_home(path, seed):
-    """The procedural home of a seed; ValueError if it has the name of another one."""
-    home = World.load(path)
-    if home.name != f"home-{seed}":
-        raise ValueError(f"{path}: expected home-{seed}, found {home.name}")
-    return home

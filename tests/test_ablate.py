@@ -68,8 +68,9 @@ OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Mo
                of_gcn={"n_views": 7, "epochs": 9}, views_beyond=west, starts_beyond=east)
 
 
-@pytest.mark.parametrize("choice", [OURS, OTHER], ids=["ours", "other"])
-def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, parts, monkeypatch):
+@pytest.mark.parametrize(("choice", "net"), [(OURS, None), (OURS, {"weights": 2}), (OTHER, None)],
+                         ids=["ours", "another net", "other"])
+def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, net, parts, monkeypatch):
     senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
     gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
@@ -101,8 +102,8 @@ def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(c
     for module, double in ((learned, learn_places), (episode, train_nnql), (episode, run_all)):
         monkeypatch.setattr(module, double.__name__, double)
     s = Settings(gcn_views=24, gcn_epochs=3, gcn_batch=16, gcn_rate=0.02)
-    result, _ = ablate.measure(choice, CELL, senses, starts, s)
-    net = None if choice.true_labels else senses.net
+    result, _ = ablate.measure(choice, CELL, senses, starts, s, net)
+    net = None if choice.true_labels else net or senses.net
     how = {"epochs": s.gcn_epochs, "batch": s.gcn_batch, "rate": s.gcn_rate}
     assert learnt == ([(net, 7, 2, how | {"epochs": 9})] if choice.anew else [])
     there = 0.7 if choice is OTHER else height
@@ -158,11 +159,12 @@ def test_every_choice_is_another_one_than_ours_and_than_the_others():
         of_view = any(name.startswith(("camera.", "strip.")) for name in choice.constants)
         of_view |= any(name.startswith("senses.") for name in choice.constants)  # and none's labels take their place
         assert choice.true_labels >= of_view  # no net knows such views
-        assert choice.anew or not (choice.of_gcn or choice.views_beyond)
+        assert choice.anew or not (choice.of_gcn or choice.of_net or choice.views_beyond)
         changes.append((choice.rules, choice.store, choice.motion, changed, choice.true_labels, choice.luck,
-                        choice.anew and choice.luck, choice.of_gcn, choice.views_beyond, choice.starts_beyond))
+                        choice.anew and choice.luck, choice.of_gcn, choice.of_net, choice.views_beyond,
+                        choice.starts_beyond))
         assert choice.store.get("k") != nnql.K_NEIGHBOURS
-    ours = OURS.rules, OURS.store, OURS.motion, {}, False, 0, False, {}, None, None
+    ours = OURS.rules, OURS.store, OURS.motion, {}, False, 0, False, {}, {}, None, None
     assert all(one != other for one, other in itertools.combinations([ours, *changes], 2))
 
 
@@ -214,21 +216,27 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
 
     def run_jobs(out, jobs, *_):
         asked.extend((choice, cell) for _, _, choice, cell, *_ in jobs)
+        assert [net or {} for *_, net in jobs] == [choice.of_net for choice, _ in asked]
         assert [name for name, *_ in jobs] == [ablate.name_of(choice, cell) for choice, cell in asked]
         write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
+    def taught_net(_out, _settings, **others):
+        return others
+
     for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809))), ("load_starts", lambda *_: None),
+                        ("taught_net", taught_net),
                         ("executor", contextlib.nullcontext), ("run_jobs", run_jobs)):
         monkeypatch.setattr(ablate, name, value)
     for _ in range(2):  # the second one has nothing to do
         with pytest.raises(SystemExit) as exit:
             main(["ablate", "--out", str(tmp_path / "out"), "--points", "neighbours", "labels of the views",
-                  "--page", str(page)])
+                  "pictures of the net", "--page", str(page)])
         assert exit.value.code == 0
-        neighbours = [choice for choice in CHOICES if choice.point == "neighbours"]
-        assert asked == list(itertools.product([OURS, TRUE_LABELS, *neighbours], ablate.CELLS))
+        others = [choice for choice in CHOICES if choice.point in ("neighbours", "pictures of the net")]
+        assert any(choice.of_net for choice in others)
+        assert asked == list(itertools.product([OURS, TRUE_LABELS, *others], ablate.CELLS))
     printed = capsys.readouterr().out
-    assert printed.count("15 of 15 runs were there before, in ") == printed.count("runs were there before") == 1
+    assert printed.count("18 of 18 runs were there before, in ") == printed.count("runs were there before") == 1
     assert printed.count("| neighbours | k = 16 | ours |") == printed.count("| labels of the views |") == 2
     lines = page.read_text().splitlines()
     assert lines[1] == "| edges | ? |"

@@ -282,44 +282,6 @@ def test_damaged_settings_are_named(tmp_path, capsys, damage):
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [damage]
 
 
-def test_what_cells_share_is_drawn_and_learned_by_the_settings(tmp_path, monkeypatch):
-    settings, net, drawn, asked = table.Settings(*range(101, 112)), {"w": np.zeros(3)}, [], {}  # all numbers differ
-    made_by = {"homes": 105, "views": 106, "seed": 0, "noise": 104}
-
-    def segmentation_net(_folder, views, made_by, epochs, seed, stage):
-        asked["net"] = views, made_by, epochs
-        return net
-
-    def place_classifiers(_folder, senses, n_views, _seed, made_by, pool, **how):
-        asked["gcn"] = n_views, made_by, pool, how
-        return [(world, "GCN") for world in senses]
-
-    def load_views(path):
-        return ("photographs", "truth"), made_by
-
-    def program(argv):
-        drawn.append(argv[3:])
-        return SimpleNamespace(returncode=0)
-
-    monkeypatch.setattr(table, "subprocess", SimpleNamespace(run=program))
-    monkeypatch.setattr(table, "World", SimpleNamespace(load=lambda path: SimpleNamespace(name=path.stem)))
-    for double in (segmentation_net, place_classifiers, load_views):
-        monkeypatch.setattr(learned, double.__name__, double)
-    (world, one), = table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool")
-    data = tmp_path / "data"
-    assert drawn == [
-        ["views", f"{data / 'views.npz'}", "--homes", "105", "--views", "106", "--noise", "104"],
-        ["starts", f"{data}", "--cell", "800", "1.0", "90", "3", "--training", "101", "--tests", "102",
-         "--validation", "103", "--jobs", "2"]]
-    assert asked == {"net": (("photographs", "truth"), made_by, 107),
-                     "gcn": (108, {"net": learned.fingerprint(net), "noise": 104}, "pool",
-                             {"epochs": 109, "batch": 110, "rate": 111})}
-    assert (world, one.world.name, one.net, one.gcn, one.noise) == (800, "home-800", net, "GCN", 104)
-    made_by["noise"] = 3
-    with pytest.raises(ValueError, match=r"views\.npz: expected results of noise 104, found some of 3; "):
-        next(table.prepare(tmp_path, settings, [Cell(800, 1.0, 90, 3)], 2, "pool"))
-
-
 def test_what_is_finished_is_kept_though_others_failed(tmp_path):
     class AtOnce:
         def submit(self, function):

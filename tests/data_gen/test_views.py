@@ -59,6 +59,11 @@ def test_a_bare_wall_is_looked_away_from(tokens):
     assert (labels.max((1, 2)) == 6).all()
 
 
+def test_where_one_kind_of_things_is_enough_a_bare_wall_will_do(tokens):
+    _, labels = training_views(2, 9, seed=0, n_kinds=1)
+    assert (labels.max((1, 2)) == [0, 6, 6, 0, 0, 6, 6, 0, 6]).all()
+
+
 @pytest.mark.parametrize(("n_homes", "n_views"), [(4, 10), (3, 9), (5, 3), (1, 1)])
 def test_views_come_evenly_from_all_homes(tokens, n_homes, n_views):
     rgb, _ = training_views(n_homes, n_views, seed=0)
@@ -88,7 +93,8 @@ def test_progress_ends_at_all(tokens):
 
 @pytest.mark.parametrize(("arguments", "name"), [
     ({"n_homes": 0}, "homes"), ({"n_homes": -1}, "homes"), ({"n_views": 0}, "views"), ({"noise": -1.0}, "noise"),
-    ({"noise": np.nan}, "noise"), ({"noise": 1e9}, "noise"), ({"seed": -1}, "seed")], ids=str)
+    ({"noise": np.nan}, "noise"), ({"noise": 1e9}, "noise"), ({"seed": -1}, "seed"), ({"n_kinds": 0}, "kinds"),
+    ({"n_kinds": 4}, "kinds")], ids=str)
 def test_what_cannot_be_is_refused_by_name(tokens, arguments, name):
     with pytest.raises(ValueError, match=f"{name}: expected .*, found "):
         training_views(**{"n_homes": 1, "n_views": 1, "seed": 0, **arguments})
@@ -139,11 +145,11 @@ def test_views_are_the_same_bits_in_a_fresh_process_and_other_ones_by_another_se
 
 def test_a_file_of_views_says_what_made_it_and_is_made_once(tokens, tmp_path, capsys):
     path = tmp_path / "views.npz"
-    options = ["--homes", 2, "--views", 6, "--seed", 3, "--noise", 0.5]
+    options = ["--homes", 2, "--views", 6, "--seed", 3, "--kinds", 2, "--noise", 0.5]
     assert run("views", path, *options) == 0
     made_by = load_arrays(path)[1]
     assert len(made_by.pop("code")) == 8
-    assert made_by == {"homes": 2, "views": 6, "seed": 3, "noise": 0.5}
+    assert made_by == {"homes": 2, "views": 6, "seed": 3, "noise": 0.5, "kinds": 2}
     assert capsys.readouterr().out.count("\n") == 1
     before = path.stat()
     assert run("views", path, *options) == 0
@@ -156,7 +162,7 @@ def test_a_file_of_views_says_what_made_it_and_is_made_once(tokens, tmp_path, ca
 
 BAD = ["home {}/a --aliasing 2", "home {}/a --aliasing nan", "home {}/a --seed -1", "home {}", "views {}/a --homes 0",
        "views {}/a --homes 801", "views {}/a --views 0", "views {}/a --noise -1", "views {}/a --noise nan",
-       "views {}/a --seed -1", "views {}", "views {}/song.txt",
+       "views {}/a --seed -1", "views {}/a --kinds 4", "views {}", "views {}/song.txt",
        "views {}/song.txt/a --homes 1 --views 1"]
 
 
