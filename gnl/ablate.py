@@ -64,9 +64,9 @@ def run(args):
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
             starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
             nets = {choice.other: taught_net(out, SETTINGS, **choice.of_net) for choice in chosen if choice.of_net}
-            run_jobs(out, [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS,
-                            choice.of_net and nets[choice.other]) for name, (choice, cell) in todo.items()],
-                     SETTINGS.episodes, pool, "ablate")
+            runs = [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS,
+                     nets[choice.other] if choice.of_net else None) for name, (choice, cell) in todo.items()]
+            run_jobs(out, runs, SETTINGS.episodes, pool, "ablate")
     if len(todo) < len(jobs):
         print(f"{len(jobs) - len(todo)} of {len(jobs)} runs were there before, in {out / 'cells'}")
     measured = effects(out, chosen)

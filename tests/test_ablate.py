@@ -216,7 +216,7 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
 
     def run_jobs(out, jobs, *_):
         asked.extend((choice, cell) for _, _, choice, cell, *_ in jobs)
-        assert [net or {} for *_, net in jobs] == [choice.of_net for choice, _ in asked]
+        assert [net for *_, net in jobs] == [choice.of_net or None for choice, _ in asked]
         assert [name for name, *_ in jobs] == [ablate.name_of(choice, cell) for choice, cell in asked]
         write_outcomes(out, [choice for choice, _ in asked[::len(ablate.CELLS)]])
 
