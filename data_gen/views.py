@@ -20,7 +20,7 @@ from gnl.terminal import Stage
 from .rooms import make_home
 
 # DIFFERS: the net learns from homes of the same kind as those where it is used; the paper's from photographs (ADE20K).
-KINDS, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
+LEAST_KINDS, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
 
 MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # that decide what there is to see
@@ -33,7 +33,7 @@ def add_arguments(parser):
     parser.add_argument("--views", type=int, default=2400)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
-    parser.add_argument("--kinds", type=int, default=KINDS, help=f"least kinds of things in each view ({KINDS})")
+    parser.add_argument("--kinds", type=int, default=LEAST_KINDS, help=f"kinds in each view, or more ({LEAST_KINDS})")
 
 
 def run(args):
@@ -52,8 +52,8 @@ def run(args):
     stage.done(f"{args.homes} furnished homes drawn, {args.views} views rendered to learn from")
 
 
-def training_views(n_homes, n_views, seed, noise=1.0, n_kinds=KINDS, progress=None):
-    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, each with n_kinds classes that fill 1 %.
+def training_views(n_homes, n_views, seed, noise=1.0, n_kinds=LEAST_KINDS, progress=None):
+    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, n_kinds classes or more fill 1 % of each.
 
     returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
     """
@@ -63,8 +63,8 @@ def training_views(n_homes, n_views, seed, noise=1.0, n_kinds=KINDS, progress=No
         raise ValueError(f"views: expected at least 1, found {n_views}")
     if seed < 0:
         raise ValueError(f"seed: expected at least 0, found {seed}")
-    if not 1 <= n_kinds <= KINDS:
-        raise ValueError(f"kinds: expected 1..{KINDS}, found {n_kinds}")
+    if not 1 <= n_kinds <= LEAST_KINDS:  # views of more kinds may be too rare to find
+        raise ValueError(f"kinds: expected 1..{LEAST_KINDS}, found {n_kinds}")
     check_noise(noise)
     rng, rgb, labels = np.random.default_rng(seed), [], []
     for home in range(n_homes):

@@ -63,9 +63,10 @@ def run(args):
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
             starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
-            nets = {choice.other: taught_net(out, SETTINGS, **choice.of_net) for choice in chosen if choice.of_net}
+            of_nets = {(choice.point, choice.other): choice.of_net for choice, _ in todo.values() if choice.of_net}
+            nets = {name: taught_net(out, SETTINGS, **options) for name, options in of_nets.items()}
             runs = [(name, measure, choice, cell, senses[cell.world], starts[cell], SETTINGS,
-                     nets[choice.other] if choice.of_net else None) for name, (choice, cell) in todo.items()]
+                     nets.get((choice.point, choice.other))) for name, (choice, cell) in todo.items()]
             run_jobs(out, runs, SETTINGS.episodes, pool, "ablate")
     if len(todo) < len(jobs):
         print(f"{len(jobs) - len(todo)} of {len(jobs)} runs were there before, in {out / 'cells'}")

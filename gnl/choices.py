@@ -38,7 +38,7 @@ class Choice:
     of_training: dict = field(default_factory=dict)  # constants while NNQL learns
     n_more: int = 0  # numbers of a state beside one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
-    of_net: dict = field(default_factory=dict)  # options of `python -m data_gen views`: a net that learned from others
+    of_net: dict = field(default_factory=dict)  # other options of `python -m data_gen views`, for a net of its own
     anew: bool = False  # the GCN is learned anew; the next two are how
     of_gcn: dict = field(default_factory=dict)  # other arguments of learned.learn_places
     views_beyond: Callable | None = None  # it sees views from beyond the gap from the tests, as gaps.beyond_gap, alone

@@ -129,7 +129,8 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
                progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    checkpoint_every : take a checkpoint whenever so many more have ended, before the next begins; none if not given
+    checkpoint_every : take a checkpoint whenever so many more have ended, before the next begins; none if not given.
+    It cuts the groups that learn side by side: with others, or none, one seed learns otherwise
     store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`;
     the rules' reward gets what happened, too, and `done`, whether nothing comes after
     progress(share done, recent share of right answers)
@@ -146,7 +147,6 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
         if watch:
             watch(step, seen=seen, actions=actions, states=states, **others)
 
-    # Robots side by side are done together: so a group ends wherever a checkpoint falls.
     cuts = range(checkpoint_every, len(starts), checkpoint_every) if checkpoint_every else ()
     groups = [group for stretch in np.split(starts, cuts) for group in side_by_side(stretch)]
     done, recent = 0, []

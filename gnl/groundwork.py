@@ -25,7 +25,7 @@ def prepare(out, settings, cells, jobs, pool):
     """
     worlds = sorted({cell.world for cell in cells})
     homes = {world: out / "data" / f"home-{world}.json" for world in worlds}
-    lacking = [cell for cell in cells if not (homes[cell.world].exists() and starts_of(out, cell).exists())]
+    lacking = [cell for cell in cells if not (homes[cell.world].exists() and starts_path(out, cell).exists())]
     if lacking:
         names = [part for cell in lacking for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
         _draw("starts", out / "data", *names, "--training", settings.episodes, "--tests", settings.tests,
@@ -49,18 +49,18 @@ def taught_net(out, settings, **others):
     pictures, made_by = learned.load_views(views)
     check_settings(views, made_by, options)
     net = learned.segmentation_net(out / "learned", pictures, made_by, settings.net_epochs, seed=0, stage=stage)
-    stage.done(f"{settings.net_epochs} epochs of {settings.net_views} views of {settings.net_homes} other homes")
+    stage.done(f"{settings.net_epochs} epochs of {options['views']} views of {options['homes']} other homes")
     return net
 
 
-def starts_of(out, cell):
+def starts_path(out, cell):
     """The file of a cell's start poses."""
     return Path(out) / "data" / f"starts-{cell.name}.npz"
 
 
 def load_starts(out, cell, settings):
     """A cell's start poses; ValueError if they are not as many as the settings say."""
-    starts, _ = load_arrays(path := starts_of(out, cell))
+    starts, _ = load_arrays(path := starts_path(out, cell))
     wanted = {"training": (settings.episodes, 3), "tests": (settings.tests, 3), "validation": (settings.validation, 3)}
     found = {name: poses.shape for name, poses in starts.items()}
     if found != wanted:
