@@ -63,13 +63,15 @@ def load(path, ade20k=False):
         raise ValueError(f"{path}: expected one image, found {n_frames}")
     if image.format == "JPEG":
         raise ValueError(f"{path}: expected an image that keeps indices as they are, such as PNG, found JPEG")
+    found = f"a picture of mode {image.mode}"
     if image.mode in ("RGB", "RGBA", "P") and not ade20k:
         labels = by_colour(np.array(image.convert("RGB")))
         if labels.max() < N_CLASSES:
             return labels, True
+        found += f", {np.mean(labels == N_CLASSES):.1%} of it in other colours"
     if image.mode not in ("L", "P", "I", "I;16", "1"):
         raise ValueError(f"{path}: expected one class index a pixel, or the colours of classes.py and no others, "
-                         f"found a picture of mode {image.mode}")
+                         f"found {found}")
     labels = np.array(image).astype(int)
     highest = 150 if ade20k else N_CLASSES - 1
     if labels.min() < 0 or labels.max() > highest:

@@ -206,7 +206,7 @@ def folder(path):
 
 def rgb(path):
     Image.new("RGB", (8, 8)).save(path)
-    return ["expected one class index a pixel", "RGB"]
+    return ["expected one class index a pixel", "RGB", "100.0% of it in other colours"]
 
 
 def moving(path):
