@@ -26,6 +26,7 @@ LARGEST_HOME_M = 200.0
 FARTHEST_M = 10_000.0  # from the origin: farther off, 32 bits hold a particle's place to no better than a millimetre
 MOST_CORNERS, MOST_INNER = 400, 50  # of a polygon; to cover a jagged one takes time as their number to the third
 HUGE = 1e9
+DEEPEST = 100  # lists and objects inside one another; the format needs five
 
 
 def load(path):
@@ -37,6 +38,12 @@ def load(path):
         raise ValueError(f"{path}: expected a floor plan, found no readable file ({error.strerror})") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: expected JSON, found something else ({error})") from None
+    outer = [[plan]]
+    for _ in range(DEEPEST + 1):
+        inner = [value for one in outer for value in (one.values() if isinstance(one, dict) else one)]
+        outer = [value for value in inner if isinstance(value, (dict, list))]
+    if outer:
+        raise ValueError(f"{path}: expected at most {DEEPEST} lists or objects inside one another, found more")
     return check(plan, path)
 
 

@@ -119,6 +119,19 @@ def test_what_is_no_json_is_refused_by_name(tmp_path, content):
     assert str(refusal.value).startswith(f"{path}: expected JSON, found something else")
 
 
+def test_a_plan_is_nested_no_deeper_than_what_works_with_it_can_go(tmp_path):
+    path = tmp_path / "home.json"
+    for inner in (98, 99, 500):  # lists in the plan and in the list of notes
+        notes = [json.loads("[" * inner + "]" * inner)]
+        path.write_text(json.dumps({**GOOD, "notes": notes}))
+        if inner == 98:
+            assert floor_plan.load(path)["notes"] == notes
+        else:
+            with pytest.raises(ValueError) as refusal:
+                floor_plan.load(path)
+            assert str(refusal.value) == f"{path}: expected at most 100 lists or objects inside one another, found more"
+
+
 def test_a_number_without_end_is_refused_by_name(tmp_path):
     path = tmp_path / "home.json"
     path.write_text('{"walls": [[0, 0, 1, ' + 5000 * "9" + "]]}")
