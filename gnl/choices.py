@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 from scipy import ndimage
 
+from . import planners
 from .camera import render, true_labels
 from .episode import Rules
 from .gaps import beyond_gap
@@ -159,6 +160,12 @@ class LeftOrForward(Robot):
         return super().step(poses, np.where(np.asarray(actions) == 0, LEFT, FORWARD), rng)
 
 
+def _five_times(point, other, *args, **options):
+    """A choice with our seed and four others: one training says little."""
+    return [Choice(point, other + (f", seed {n}" if n else ""), *args, **options, luck=n) for n in range(5)]
+
+
+PLAIN_MEAN = {"k": 64, "alpha": 1.0}  # a pair is worth what came of it the last time, and not what its neighbours are
 CHOICES = [
     Choice("labels of the views", "true labels", true_labels=True, anew=True),
     Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),
@@ -195,14 +202,13 @@ CHOICES = [
     Choice("actions: forward", "1 m", motion=Motion(forward_m=1.0)),
     Choice("actions: which", "left and forward", constants={
         "ablate.Robot": LeftOrForward, "ablate.N_ACTIONS": 2, "planners.N_ACTIONS": 2}),
-    Choice("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
-    *(Choice("state", f"probabilities, seed {n}", Rules(state=probabilities), {"index": BruteForce}, luck=n)
-      for n in range(1, 5)),
+    *_five_times("state", "probabilities", Rules(state=probabilities), {"index": BruteForce}),
     Choice("state", "best place, one-hot", Rules(state=best_place), {"index": BruteForce}),
     Choice("state", "the filter's ranks", Rules(state=filter_ranks)),
     Choice("state", "the filter's ranks, max", Rules(state=partial(filter_ranks, pooling="max"))),
     Choice("state", "ranks and last action", Rules(state=with_last_action), {"index": BruteForce},
            n_more=N_ACTIONS + 1),
+    *_five_times("state", "the filter's ranks, k = 64, alpha = 1", Rules(state=filter_ranks), PLAIN_MEAN),
     Choice("reward", "after the last step alone", Rules(reward=at_the_end)),
     Choice("reward: for which answer", "the view's first place", Rules(reward=of_the_view)),
     Choice("the last step", "Q goes on after it", constants={"nnql.NNQL": Endless}),
@@ -210,11 +216,15 @@ CHOICES = [
     Choice("neighbours", "k = 1", store={"k": 1}),
     Choice("neighbours", "k = 16", store={"k": 16}),
     Choice("neighbours", "k = 64", store={"k": 64}),
-    *(Choice("mean of the neighbours", other + (f", seed {n}" if n else ""), Rules(state=state),
-             constants={"nnql.NNQL": partial(Shrunk, pull=pull)}, luck=n)
-      for other, state, pull in (("and, as 64 more, that of step and last action", with_context, 64),
-                                 ("that of step and last action alone", with_context, 1e9),
-                                 ("and, as 64 more, that of the action", without_context, 64)) for n in range(5)),
+    *_five_times("neighbours", "k = 64, alpha = 1", store=PLAIN_MEAN),
+    *_five_times("mean of the neighbours", "and, as 64 more, that of step and last action", Rules(state=with_context),
+                constants={"nnql.NNQL": partial(Shrunk, pull=64)}),
+    *_five_times("mean of the neighbours", "that of step and last action alone", Rules(state=with_context),
+                constants={"nnql.NNQL": partial(Shrunk, pull=1e9)}),
+    *_five_times("mean of the neighbours", "and, as 64 more, that of the action", Rules(state=without_context),
+                constants={"nnql.NNQL": partial(Shrunk, pull=64)}),
+    *_five_times("actions by chance", "all", of_training={"nnql.epsilon": np.ones_like}),
+    *_five_times("when to choose", "at the first view alone", constants={"planners.greedy": planners.go_on}),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import nnql, planners
+from .kdtree import check_count
 from .nn import softmax
 from .particles import FLOOR, ParticleFilter
 from .ranks import reciprocal_ranks
@@ -135,8 +136,8 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
     the rules' reward gets what happened, too, and `done`, whether nothing comes after
     progress(share done, recent share of right answers)
     """
-    if checkpoint_every is not None and checkpoint_every < 1:
-        raise ValueError(f"checkpoint_every: expected at least 1 episode, found {checkpoint_every}")
+    if checkpoint_every is not None:
+        checkpoint_every = check_count("checkpoint_every", checkpoint_every, 1)
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
 

@@ -1,8 +1,9 @@
 """Our kernels beside the plain or the library way: `make bench`.
 
 Times drift by a third from run to run, so what counts is the ratio: ours and its rivals take turns within one run,
-and a row shows the medians. All times are microseconds of one processor per view, graph, query or filter. Nothing
-is asserted. Rivals that are not installed (`pip install -e .[bench]`) are not counted.
+each long enough to find in the caches what it left there and not what the other did, and a row shows the medians. All
+times are microseconds of one processor per view, graph, query or filter. Nothing is asserted. Rivals that are not
+installed (`pip install -e .[bench]`) are not counted.
 """
 
 import importlib
@@ -27,7 +28,7 @@ from gnl.senses import Senses
 from gnl.strip import cast
 from tests.bench_data import plain_filter, ray_loop, views_like
 
-ROUNDS, SAMPLE_S, K = 11, 0.004, 300  # turns of each peer, and how long one lasts at least; places
+ROUNDS, SAMPLE_S, K = 11, 0.05, 300  # turns of each peer, and how long one lasts at least; places
 
 
 def optional(name):

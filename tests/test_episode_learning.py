@@ -114,6 +114,12 @@ def test_at_a_checkpoint_so_many_episodes_have_ended_and_the_next_have_not_begun
         assert diary.log == [episode.LENGTH * n for n in groups]  # steps learned by then
 
 
+@pytest.mark.parametrize("every", [0, -1, 2.5, "2"])
+def test_checkpoints_come_after_whole_numbers_of_episodes(every):
+    with pytest.raises(ValueError, match=rf"checkpoint_every: expected a whole number from 1 .*, found {every!r}"):
+        train_nnql(Sense(knows), Glide(), GRID, starts(8), 0, checkpoint_every=every, store=Diary())
+
+
 def test_the_share_of_right_answers_that_is_told_is_that_after_the_last_look_of_the_last_ten_groups(monkeypatch):
     monkeypatch.setattr(episode, "SIDE_BY_SIDE", 1)
     told, looks = [], []
