@@ -28,7 +28,7 @@ def row(text, first):
 def test_the_programs_of_the_page_ask_for_what_there_is():
     """They run for half an hour each; here it is looked up that all names which they take from gnl are still there."""
     programs = re.findall(r"```py\n(.*?)```", (RESULTS / "README.md").read_text(), re.DOTALL)
-    assert len(programs) == 3
+    assert len(programs) == 4
     there = {}
     for tree in map(ast.parse, programs):
         for node in ast.walk(tree):
