@@ -37,7 +37,7 @@ help:
 	@echo "make test    run the tests, but for the long ones"
 	@echo "make test-long   run those: demo and tables from end to end, killed and begun again; all chapters"
 	@echo "make lint    check the style of the code"
-	@echo "make table   the paper's experiment at full scale, then its report (out/table; three quarters of an hour)"
+	@echo "make table   the paper's experiment at full scale, then its report (out/table; half an hour or more)"
 	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); TABLE=folder; more with  $(RUN) -m gnl table --help"
 	@echo "make tutorials   run every chapter and render its figures anew; CHAPTERS='04 07' some of them"
 	@echo "make bench   our kernels beside the plain or library way, as ratios"

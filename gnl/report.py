@@ -221,8 +221,9 @@ def cost(costs):
     machines = Counter(of_cell["machine"] for of_cell in costs)
     versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
     memory = max(of_cell["peak MB"] for of_cell in costs)
-    return (f"{views} views in {seconds / 3600:.2f} hours, summed over cells that ran side by side, "
-            f"{training / 3600:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; "
+    unit, size_s = ("hours", 3600) if seconds >= 3600 else ("minutes", 60)
+    return (f"{views} views in {seconds / size_s:.2f} {unit}, summed over cells that ran side by side, "
+            f"{training / size_s:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; "
             f"{', '.join(machines)}; {versions}. Milliseconds a view; the paper does not say whether its 18 hold the "
             "net, and names none for rendering, filter and learning:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))

@@ -65,7 +65,7 @@ def run(args):
     if todo:
         with executor(args.jobs, args.dask) as pool:
             run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
-    print(f"{len(cells)} cells in {out / 'cells'}; python -m gnl report --out {out}")
+    print(f"{len(cells)} cells in {out / 'cells'}; `report --out {out}` tells what they say")
 
 
 def jobs_of(out, settings, cells, todo, jobs, pool):

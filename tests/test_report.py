@@ -234,6 +234,12 @@ def test_costs_are_those_of_all_views(written):
     assert part.index("labels and graph") < part.index("| all |")
 
 
+def test_costs_of_a_short_run_are_told_in_minutes():
+    short = {"seconds": 12.0, "views": 1000, "of stages": {"graph": 3}, "of training": {"seconds": 9.0, "views": 800},
+             "machine": "core 0", "peak MB": 123.0, "versions": {"numpy": "2.0"}}
+    assert report.cost([short]).startswith("1000 views in 0.20 minutes, summed over cells that ran side by side, 0.15 ")
+
+
 def test_intervals_of_few_cells_are_told_to_say_little(written):
     assert "from a bootstrap of whole cells: of so few cells they say nothing." in written
 

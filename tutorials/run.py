@@ -55,7 +55,7 @@ def main(names):
     for page in chosen:
         start = time.perf_counter()
         run(page)
-        print(f"{page.stem:<28} {time.perf_counter() - start:5.1f} s")
+        print(f"{page.stem:<32}{time.perf_counter() - start:5.1f} s, and prints what is written")
 
 
 if __name__ == "__main__":

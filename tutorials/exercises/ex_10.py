@@ -5,7 +5,7 @@ from grader import expect, main
 
 
 def undone_by_chance():
-    """Exercise 10.1: of a planner of pure chance with the actions left, right, forward: (share, probability).
+    """Exercise 10.1: of a planner of pure chance with the actions left, right, forward: (share, probability), 0..1.
 
     share of its pairs of successive actions that undo a turn; probability that four actions hold no such pair
     """
@@ -40,6 +40,8 @@ def cell_means(outcomes, drawn):
 
 def option_values(rewards, near, length):
     """Exercise 10.5: V_length, the worth of n remembered steps of one action if it is gone on with: (n,).
+
+    That of a step is its reward / L, and the mean of V_(length - 1) over the steps near it.
 
     rewards (n,);  near (n, k) numbers of the steps whose states are nearest to the state after each;  length L >= 1
     """
