@@ -35,8 +35,8 @@ def test_the_programs_of_the_page_ask_for_what_there_is():
             if isinstance(node, ast.ImportFrom) and node.module.startswith("gnl"):
                 module = importlib.import_module(node.module)
                 for alias in node.names:
-                    there[alias.name] = getattr(module, alias.name, None) or importlib.import_module(
-                        f"{node.module}.{alias.name}")
+                    there[alias.name] = (getattr(module, alias.name) if hasattr(module, alias.name) else
+                                         importlib.import_module(f"{node.module}.{alias.name}"))
         for node in ast.walk(tree):
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in there:
                 assert hasattr(there[node.value.id], node.attr), f"{node.value.id}.{node.attr}"
