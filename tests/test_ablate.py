@@ -236,13 +236,13 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
         assert any(choice.of_net for choice in others)
         assert asked == list(itertools.product([OURS, TRUE_LABELS, *others], ablate.CELLS))
     printed = capsys.readouterr().out
-    n = len(asked)
-    assert printed.count(f"{n} of {n} runs were there before, in ") == printed.count("runs were there before") == 1
+    assert printed.count("33 of 33 runs were there before, in ") == printed.count("runs were there before") == 1
     assert printed.count("| neighbours | k = 16 | ours |") == printed.count("| labels of the views |") == 2
     lines = page.read_text().splitlines()
     assert lines[1] == "| edges | ? |"
-    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == [
-        choice.other for choice in CHOICES if choice.point == "neighbours"]
+    others = ["k = 1", "k = 16", "k = 64", *(f"k = 64, alpha = 1{seed}" for seed in (
+        "", ", seed 1", ", seed 2", ", seed 3", ", seed 4"))]
+    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == others
 
 
 def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():
