@@ -240,9 +240,9 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
     assert printed.count("| neighbours | k = 16 | ours |") == printed.count("| labels of the views |") == 2
     lines = page.read_text().splitlines()
     assert lines[1] == "| edges | ? |"
-    others = ["k = 1", "k = 16", "k = 64", *(f"k = 64, alpha = 1{seed}" for seed in (
+    expected = ["k = 1", "k = 16", "k = 64", *(f"k = 64, alpha = 1{seed}" for seed in (
         "", ", seed 1", ", seed 2", ", seed 3", ", seed 4"))]
-    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == others
+    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == expected
 
 
 def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():
