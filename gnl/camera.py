@@ -97,8 +97,8 @@ def row_of(z, w, size):
 def _pile(world, strip, size):
     """Surfaces of each ray, near to far: (ray, face, w, first row, end row), those without a pixel left out."""
     box, w = strip.face // FACES, strip.w_in
-    low, high = world.z.T.clip(None, world.wall_height)  # what is taller than the walls ends at the ceiling
-    from_above, from_below = high < HEIGHT_M, (low > HEIGHT_M) & (low < world.wall_height)
+    low, high = world.z.T.clip(0, world.wall_height)  # what goes through floor or ceiling ends there
+    from_above, from_below = (high > 0) & (high < HEIGHT_M), (low > HEIGHT_M) & (low < world.wall_height)
     level, flat = np.where(from_above, high, low), np.where(from_above, TOP, UNDERSIDE)
     capped = np.flatnonzero((from_above | from_below).take(box))  # crossings that show a top or an underside, too
     capped_box, w_front = box.take(capped), w.take(capped)

@@ -45,7 +45,8 @@ class Checkpoints:
     def to_arrays(self):
         """All checkpoints as named arrays, for a file."""
         arrays = {}
-        for a, entries in enumerate(zip(*self.entries, strict=True) if self.entries else [()] * len(self._latest)):
+        for a in range(len(self._latest)):
+            entries = [entry[a] for entry in self.entries]
             arrays |= {f"born{a}": np.array([born for born, _, _ in entries], int),
                        f"n_changed{a}": np.array([len(changed) for _, changed, _ in entries], int),
                        f"changed{a}": np.concatenate([np.empty(0, np.int32), *(c for _, c, _ in entries)]),

@@ -59,7 +59,7 @@ def best_place(scores, _particles, _step, _actions):
 
 def filter_ranks(scores, particles, _step, _actions, pooling="sum"):
     """State: the reciprocal ranks of the filter's belief instead of the view's."""
-    return reciprocal_ranks(particles.belief(scores.shape[1], pooling))
+    return reciprocal_ranks(particles.belief(pooling))
 
 
 def with_last_action(scores, _particles, _step, actions):

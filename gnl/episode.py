@@ -15,6 +15,7 @@ from . import nnql, planners
 from .kdtree import check_count
 from .nn import softmax
 from .particles import FLOOR, ParticleFilter
+from .places import check_poses
 from .ranks import reciprocal_ranks
 
 LENGTH = 4
@@ -79,7 +80,8 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
     """
     rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
-    poses, B = np.array(starts, float), len(starts)
+    poses = check_poses(starts).reshape(-1, 3)
+    B = len(poses)
     kept, states, actions, particles = {name: [] for name in Record.__dataclass_fields__}, None, None, None
     for step in range(rules.length + 1):
         if step:
@@ -94,7 +96,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             senses.timed("filter", _update, particles, odometry, fit)
         else:
             particles = senses.timed("filter", rules.filter, grid, fit, filtering)
-        pooled = senses.timed("filter", particles.belief, grid.n_places, rules.pooling)
+        pooled = senses.timed("filter", particles.belief, rules.pooling)
         seen, states = states, senses.timed("ranks", rules.state, scores, particles, step, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
         in_place = pooled[np.arange(B), places]
@@ -130,8 +132,8 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
                progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    checkpoint_every : take a checkpoint whenever so many more have ended, before the next begins; none if not given.
-    It cuts the groups that learn side by side: with others, or none, one seed learns otherwise
+    checkpoint_every : take one after so many episodes, and so again. Robots that learn side by side end there: with
+    another number, or none, the same seed learns otherwise
     store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`;
     the rules' reward gets what happened, too, and `done`, whether nothing comes after
     progress(share done, recent share of right answers)
@@ -141,12 +143,13 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
     rules = rules or Rules()
     store = store or nnql.NNQL(grid.n_places, planners.N_ACTIONS)
 
-    def learn(step, seen, actions, states, **others):
+    def learn(step, **look):
         if step:
-            done = np.full(len(actions), step == rules.length)
-            senses.timed("learn", store.learn, seen, actions, rules.reward(done=done, **others), states, done)
+            done = np.full(len(look["actions"]), step == rules.length)
+            reward = rules.reward(done=done, **look)
+            senses.timed("learn", store.learn, look["seen"], look["actions"], reward, look["states"], done)
         if watch:
-            watch(step, seen=seen, actions=actions, states=states, **others)
+            watch(step, **look)
 
     cuts = range(checkpoint_every, len(starts), checkpoint_every) if checkpoint_every else ()
     groups = [group for stretch in np.split(starts, cuts) for group in side_by_side(stretch)]

@@ -25,7 +25,7 @@ DOOR_HEIGHT_M = 2.0
 LARGEST_HOME_M = 200.0
 FARTHEST_M = 10_000.0  # from the origin: farther off, 32 bits hold a particle's place to no better than a millimetre
 MOST_CORNERS, MOST_INNER = 400, 50  # of a polygon; to cover a jagged one takes time as their number to the third
-HUGE = 1e9
+HUGE = 1e9  # no number of a plan is greater
 DEEPEST = 100  # lists and objects inside one another; the format needs five
 
 
@@ -148,7 +148,7 @@ def check(plan, source="floor plan"):
         extent = max(max(line) - min(line) for line in zip(*points, strict=True))
         if extent > LARGEST_HOME_M:
             fail(key, f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))
-    farthest = max(abs(number) for end in ends for number in end)
+    farthest = max(abs(value) for end in ends for value in end)
     if farthest > FARTHEST_M:
         fail("walls", f"a home within {FARTHEST_M:g} m of the origin (move it there)", farthest)
     return plan

@@ -1,6 +1,6 @@
 """Where a home is inside, and where in it a robot has room: rasters of 5 cm.
 
-    inside      what a ball of 1.2 m cannot roll into from beyond the walls, all doors shut
+    inside      what a ball 1.2 m across cannot roll into from beyond the walls, all doors shut
     clearance   metres from each raster cell to the nearest obstacle
 """
 

@@ -69,9 +69,9 @@ class KDTree:
             node = self._root
             while not node.is_leaf:
                 node = node.left if point[node.axis] <= node.cut else node.right
-            equal = (self._points[node.ids] == point).all(axis=1)
-            found.append(node.ids[equal].min(initial=self._n))
-        return np.where(np.array(found, int) < self._n, found, -1).astype(int)
+            equal = node.ids[(self._points[node.ids] == point).all(axis=1)]
+            found.append(equal.min() if len(equal) else -1)
+        return np.array(found, int)
 
     def query(self, points, k, n_first=None):
         """The k nearest stored points of each query, nearest first, ties to the older point.

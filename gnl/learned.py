@@ -14,6 +14,7 @@ import numpy as np
 from . import episode, gcn, nnql, segnet
 from .classes import N_CLASSES
 from .files import load_arrays, save_arrays
+from .kdtree import check_count
 from .places import PlaceGrid
 from .ranks import ranks
 from .robot import Robot, check_actions
@@ -130,7 +131,7 @@ def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.
 
     draw(n, rng) : poses (n, 3) to learn from, if not from anywhere
     """
-    rng = np.random.default_rng(seed)
+    n_views, rng = check_count("n_views", n_views, 1), np.random.default_rng(seed)
     # CHOICE: from the whole home, places near the tests too; the paper trains one classifier "for each dataset".
     poses = (draw or senses.world.free_poses)(n_views, rng)
     half = n_views // 2 if helper and n_views > 1 else n_views

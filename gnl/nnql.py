@@ -213,6 +213,7 @@ class PastQ:
 
     def q_values(self, states):
         """Equation 1: states (B, K) -> (B, A)."""
+        states = np.asarray(states, np.float32)
         return _q_values(_neighbours(self.index, self.values, states, self.k), self.values)
 
 

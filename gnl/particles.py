@@ -67,7 +67,10 @@ class ParticleFilter:
             self.theta[some] += turn + noise[2]
 
     def weigh(self, likelihood):
-        """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them."""
+        """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them.
+
+        Likelihoods are held in 32 bits: let the greatest be somewhere around 1.
+        """
         likelihood = np.asarray(likelihood, np.float32)
         B, K = len(self.x), self.grid.n_places
         if likelihood.shape != (B, K) or not (np.isfinite(likelihood) & (likelihood >= 0)).all():
@@ -82,7 +85,7 @@ class ParticleFilter:
             if total > 0:  # a view that no particle can explain says nothing about which of them is right
                 np.divide(weight, total, out=self.weight[b])
 
-    def belief(self, n_places, pooling="sum"):
+    def belief(self, pooling="sum"):
         """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max").
 
         Their places are those where they were weighed last; a belief about what comes next is pooled after `predict`
@@ -90,10 +93,10 @@ class ParticleFilter:
         """
         if pooling not in ("sum", "max"):
             raise ValueError(f'pooling: expected "sum" or "max", found {pooling!r}')
-        pooled = np.zeros((len(self.weight), n_places))
+        pooled = np.zeros((len(self.weight), self.grid.n_places))
         for b, (place, weight) in enumerate(zip(self.place, self.weight, strict=True)):
             if pooling == "sum":
-                pooled[b] = np.bincount(place, weight.astype(float), n_places)
+                pooled[b] = np.bincount(place, weight.astype(float), self.grid.n_places)
             else:
                 np.maximum.at(pooled[b], place, weight)
         return pooled

@@ -24,8 +24,12 @@ def chance(_step, states, rng):
 
 def scan(sequence):
     """The same actions in every episode, whatever there is to see: (L,), or (B, L) one for each robot."""
+    sequence = np.asarray(sequence)
+
     def plan(step, states, _rng):
-        return np.broadcast_to(np.asarray(sequence)[..., step], len(states))
+        if step >= sequence.shape[-1]:
+            raise ValueError(f"scan: expected an action for every step, found {sequence.shape[-1]}")
+        return np.broadcast_to(sequence[..., step], len(states))
     return plan
 
 

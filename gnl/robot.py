@@ -41,7 +41,7 @@ class Robot:
                                          world.angle[world.blocks], strict=True):
             turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
             corners = [(a, b), (-a, b), (-a, -b), (a, -b)]
-            # Not the query is thick: pymunk leaves out shapes whose own bounds its bare line does not cross.
+            # The shapes are thick, not the query: pymunk leaves out every shape whose bounds the bare line misses.
             self.space.add(pymunk.Poly(self.space.static_body, corners, turn, radius_m))
 
     def step(self, poses, actions, rng):
@@ -49,7 +49,7 @@ class Robot:
 
         Each robot moves exactly as asked or until it touches; odometry errs by `motion.std_m` and `std_rad`.
         """
-        poses, m = check_poses(poses).copy(), self.motion
+        poses, m = check_poses(poses).reshape(-1, 3).copy(), self.motion
         actions = check_actions(actions, len(poses))
         turn = np.choose(actions, [m.turn_rad, -m.turn_rad, 0.0])
         forward = np.where(actions == FORWARD, m.forward_m, 0.0)

@@ -66,12 +66,13 @@ def _spread(begin, end):
 
 def join(parts):
     """One batch of the graphs of several."""
-    node = np.append(0, np.cumsum([len(part.words) for part in parts]))
-    edge = np.append(0, np.cumsum([len(part.edges) for part in parts]))
+    def starts(name):
+        return np.append(0, np.concatenate([np.diff(getattr(part, name)) for part in parts]).cumsum())
+
+    nodes_before = np.cumsum([0, *(len(part.words) for part in parts[:-1])])
+    edges = np.concatenate([part.edges + n for part, n in zip(parts, nodes_before, strict=True)])
     return SceneGraphs(np.concatenate([part.words for part in parts]), np.concatenate([part.boxes for part in parts]),
-                       np.concatenate([part.edges + n for part, n in zip(parts, node[:-1], strict=True)]),
-                       np.concatenate([[0], *(part.starts[1:] + n for part, n in zip(parts, node[:-1], strict=True))]),
-                       np.concatenate([[0], *(p.edge_starts[1:] + n for p, n in zip(parts, edge[:-1], strict=True))]))
+                       edges, starts("starts"), starts("edge_starts"))
 
 
 def scene_graph(labels):

@@ -71,6 +71,8 @@ def forward(params, rgb, learning=True):
     rgb (B, 64, 64, 3) uint8 -> (10 classes, 4 pixels of a quad, B, 16, 16, 4 quads of a square)
     learning : if not, no cache is kept, which would cost room near the processor
     """
+    if rgb.dtype != np.uint8 or rgb.shape[3:] != (3,):
+        raise ValueError(f"views: expected bytes (B, H, W, 3), found {rgb.dtype} {rgb.shape}")
     (H, W), part = rgb.shape[1:3], 4 * max(GRIDS)  # squares of 4 x 4 pixels, as many a side as the finest grid
     if H % part or W % part:
         raise ValueError(f"views: expected a height and a width that are multiples of {part}, found {H} x {W}")
@@ -191,6 +193,11 @@ def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     The rate rises over the first 20th of the steps and falls along a cosine.
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
+    if not len(rgb) or labels.shape != rgb.shape[:3] or labels.min() < 0 or labels.max() >= N_CLASSES:
+        raise ValueError(f"labels: expected those of at least one view, each pixel 0..{N_CLASSES - 1}, found "
+                         f"{labels.shape} up to {labels.max(initial=0)} for views {rgb.shape}")
+    if batch < 1 or epochs < 0:
+        raise ValueError(f"batch, epochs: expected at least 1 and at least 0, found {batch} and {epochs}")
     batch = min(batch, len(rgb))
     adam, n_batches = Adam(params), len(rgb) // batch  # of an epoch; what is left over waits for another one
     for epoch in range(epochs):

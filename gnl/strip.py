@@ -107,7 +107,7 @@ def cast(world, poses, n_columns=512):
     np.maximum.at(w_wall, ray[:n_wall], w_in[:n_wall])
     kept = np.flatnonzero(w_in >= w_wall.take(ray))
     owner = owner.take(kept)
-    side = np.where(face < V, 0, 1) + 2 * away.take(face)  # axes turned away from the camera: their sides look at it
+    side = np.where(face < V, 0, 1) + 2 * away.take(face)  # where the box's own axis points away one sees its other end
     face = box.take(seen) * FACES + side
     return Strip(B, C, ray.take(kept), w_in.take(kept), face.take(owner), seen.take(owner), exits, slope, w_wall)
 

@@ -123,10 +123,9 @@ class World:
         return poses[:n]
 
     def _carries(self):
-        """Which boxes have something above their top within their outline: (N,) bool."""
-        reach = abs(np.cos(self.angle)) * self.half.T[:, None] + abs(np.sin(self.angle)) * self.half.T[::-1, None]
-        x, y = reach[0, 0], reach[1, 0]
-        near = [abs(np.subtract.outer(c, c)) < np.add.outer(r, r) for c, r in zip(self.centre.T, (x, y), strict=True)]
+        """Which boxes have something above their top, as far as rectangles around their outlines tell: (N,) bool."""
+        reach = abs(np.cos(self.angle)) * self.half.T + abs(np.sin(self.angle)) * self.half.T[::-1]  # along x and y
+        near = [abs(np.subtract.outer(c, c)) < np.add.outer(r, r) for c, r in zip(self.centre.T, reach, strict=True)]
         above = self.z[None, :, 0] > self.z[:, None, 1] - 0.01
         return (near[0] & near[1] & above).any(1)
 
@@ -154,6 +153,8 @@ def _points(xy):
     xy = np.asarray(xy, float)
     if xy.size and xy.shape[-1:] != (2,):
         raise ValueError(f"xy: expected shape (n, 2), found {xy.shape}")
+    if not np.isfinite(xy).all():
+        raise ValueError(f"xy: expected finite numbers, found {xy[~np.isfinite(xy)][0]}")
     return xy.reshape(-1, 2)
 
 

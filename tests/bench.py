@@ -205,7 +205,7 @@ def filters(table, world, rng):
             belief.resample()
             belief.predict(odometry)
             belief.weigh(likelihood)
-            belief.belief(grid.n_places)
+            belief.belief()
 
         plain = filterpy and plain_filter(grid, likelihood[0], rng, filterpy.systematic_resample)
         table.race(f"particle filter, M = 5000, {n} side by side", cycle, n,

@@ -124,6 +124,15 @@ def test_what_is_taller_than_the_walls_ends_at_the_ceiling(z0, height):
     assert agreement(world, np.array([[1.0, 2.0, 0.0], [3.0, 2.5, -0.3]])) >= 0.999
 
 
+@pytest.mark.parametrize("z0, height", [(-0.3, 0.8), (-0.02, 0.5), (-0.5, 3.5), (-1, 0.5), (-0.5, 0.5)])
+def test_what_reaches_through_the_floor_begins_at_the_floor(z0, height):
+    world = World(room(thing("bed", 4, 2, 0.5, 1, height, z0)))
+    poses = np.array([[1.0, 2.0, 0.0], [3.0, 2.5, -0.3]])
+    assert agreement(world, poses) >= 0.999
+    above = room(thing("bed", 4, 2, 0.5, 1, z0 + height)) if z0 + height > 0 else room()
+    np.testing.assert_array_equal(true_labels(world, poses), true_labels(World(above), poses))
+
+
 def test_the_nearer_hides_the_farther():
     near, far = thing("refrigerator", 2.5, 2, 0.5, 1, 1.8), thing("bed", 4.5, 2, 1, 1, 0.5)
     assert BED not in column_of(World(room(near, far)), (1.0, 2.0, 0.0))

@@ -36,6 +36,7 @@ def test_the_store_at_a_checkpoint_is_a_snapshot_taken_then(index):
             np.testing.assert_array_equal(ours, theirs)
         np.testing.assert_array_equal(past.q_values(asked), snapshot.q_values(asked))
     assert abs(past.q_values(asked) - now).max() > 0
+    np.testing.assert_array_equal(past.q_values(asked.tolist()), past.q_values(asked))
     np.testing.assert_array_equal(store.q_values(asked), now)
 
 

@@ -128,6 +128,11 @@ def test_no_fewer_episodes_would_do():
         assert difference * np.sqrt(n - 1) / std < needed <= difference * np.sqrt(n) / std + 1e-5
 
 
+def test_no_number_of_episodes_shows_a_difference_of_nothing():
+    with pytest.raises(ValueError, match="difference: expected another than 0"):
+        episodes_needed(0, 0.5)
+
+
 def test_the_papers_own_numbers_have_the_means_that_were_seen_in_them():
     cells = table_1()
     assert len(cells) == 75

@@ -90,6 +90,13 @@ def test_an_episode_has_a_look_at_the_start_and_one_after_each_action():
     assert (record.belief <= 1 + 1e-5).all()
 
 
+def test_one_pose_is_one_robot():
+    one, many = (run(Sense(knows), Glide(), GRID, planners.chance, poses, 0) for poses in (starts(1)[0], starts(1)))
+    assert_equal(one, many)
+    with pytest.raises(ValueError, match=r"poses: expected shape \(\.\.\., 3\), found \(4, 2\)"):
+        run(Sense(knows), Glide(), GRID, planners.chance, np.zeros((4, 2)), 0)
+
+
 def test_who_knows_is_right_and_who_mistakes_is_wrong():
     assert run(Sense(knows), Glide(), GRID, planners.scan([LEFT] * 4), starts(20), 0).correct.all()
     mistaken = run(Sense(mistakes), Glide(), GRID, planners.scan([LEFT] * 4), starts(20), 0)

@@ -49,7 +49,8 @@ def test_the_store_is_told_each_step_with_the_right_reward(score, reward):
 
 def test_the_reward_is_that_of_the_rules_and_who_watches_sees_what_the_store_is_told():
     diary, looks = Diary(), []
-    rules = Rules(length=3, reward=lambda right, belief, done, **_: belief + 10 * right + 100 * done)
+    rules = Rules(length=3, reward=lambda right, belief, actions, done, **_: (
+        belief + 10 * right + 100 * done + 1000 * actions))
     train_nnql(Sense(lambda poses: 0.3 * knows(poses)), Glide(), GRID, starts(6), 0, rules, store=diary,
                watch=lambda step, **what: looks.append(what))
     assert len(looks) == 4
@@ -57,7 +58,8 @@ def test_the_reward_is_that_of_the_rules_and_who_watches_sees_what_the_store_is_
         states, actions, rewards, next_states, _ = told
         for name, value in (("seen", states), ("actions", actions), ("states", next_states)):
             np.testing.assert_array_equal(seen[name], value)
-        np.testing.assert_array_equal(rewards, seen["belief"] + 10 * seen["right"] + 100 * (step == 3))
+        np.testing.assert_array_equal(rewards, seen["belief"] + 10 * seen["right"] + 100 * (step == 3)
+                                      + 1000 * seen["actions"])
     np.testing.assert_array_equal(looks[0]["states"], diary.steps[0][0])
 
 

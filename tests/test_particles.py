@@ -42,7 +42,7 @@ def test_the_filter_approaches_exact_bayes(k):
         belief.weigh(view[None])
         exact.predict(forward, turn)
         exact.weigh(view)
-        difference = belief.belief(8)[0] - exact.belief(8)
+        difference = belief.belief()[0] - exact.belief(8)
         assert abs(difference).sum() / 2 < 0.015
     assert exact.belief(8).max() < 0.9  # it was no foregone conclusion
 
@@ -119,9 +119,9 @@ def test_the_light_survive_as_often_as_they_deserve():
 def test_resampling_leaves_the_belief_after_the_first_view_as_it_was():
     """Copies are dealt out at equal steps along the particles, so places must not take turns along them."""
     belief = new_filter(random_likelihood(0, 20), n_particles=5000)
-    before = belief.belief(K)
+    before = belief.belief()
     belief.resample()
-    np.testing.assert_allclose(belief.belief(K), before, atol=2 / 5000)
+    np.testing.assert_allclose(belief.belief(), before, atol=2 / 5000)
 
 
 def test_a_particle_of_all_the_weight_takes_every_place():
@@ -161,7 +161,7 @@ def test_likelihoods_of_zero_from_the_first_view_on_never_give_nan():
         belief.predict(np.ones((2, 2)))
         belief.weigh(np.zeros((2, K)))
         assert np.isfinite(belief.x).all()
-        np.testing.assert_allclose(belief.belief(K).sum(1), 1, rtol=1e-5)
+        np.testing.assert_allclose(belief.belief().sum(1), 1, rtol=1e-5)
 
 
 @pytest.mark.parametrize("k", [1, 3, 5])
@@ -175,7 +175,7 @@ def test_the_start_is_in_the_k_best_places_alone(k):
         assert set(places[b]) == set(best)
         assert np.ptp(np.bincount(places[b], minlength=K)[best]) <= 1  # they share the particles evenly
         deserved = likelihood[b, best] / likelihood[b, best].sum()
-        np.testing.assert_allclose(belief.belief(K)[b, best], deserved, rtol=0.02)
+        np.testing.assert_allclose(belief.belief()[b, best], deserved, rtol=0.02)
 
 
 def test_the_start_is_uniform_within_a_place():
@@ -191,7 +191,7 @@ def test_the_start_is_uniform_within_a_place():
 def test_a_home_of_fewer_places_than_k_starts_in_all_of_them():
     grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 2, 2)), n_bearings=2)
     belief = ParticleFilter(grid, np.ones((1, 2)), np.random.default_rng(0), 100, 3)
-    np.testing.assert_allclose(belief.belief(2), [[0.5, 0.5]], rtol=1e-5)
+    np.testing.assert_allclose(belief.belief(), [[0.5, 0.5]], rtol=1e-5)
 
 
 @pytest.mark.parametrize("pooling", ["sum", "max"])
@@ -199,7 +199,7 @@ def test_pooling_is_that_of_the_plain_loop(pooling):
     belief = new_filter(random_likelihood(0, 3))
     belief.predict(np.array([[0.5, 0.2]] * 3))
     belief.weigh(random_likelihood(1, 3))
-    pooled = belief.belief(K, pooling)
+    pooled = belief.belief(pooling)
     assert pooled.shape == (3, K)
     for b in range(3):
         plain = naive_learning.belief(belief.place[b], belief.weight[b], K, pooling)
@@ -235,18 +235,18 @@ def test_an_odometry_that_cannot_be_is_refused_and_moves_nothing(odometry):
 
 def test_a_belief_about_what_comes_next_is_pooled_after_weighing_by_ones():
     belief = new_filter()
-    before = belief.belief(K)
+    before = belief.belief()
     belief.predict(np.array([[0.0, np.pi]]))
-    np.testing.assert_array_equal(belief.belief(K), before)
+    np.testing.assert_array_equal(belief.belief(), before)
     belief.weigh(np.ones((1, K)))
     places = belief.grid.place_of(np.stack([belief.x, belief.y, belief.theta], -1)[0])
-    np.testing.assert_allclose(belief.belief(K)[0], np.bincount(places, belief.weight[0], K), atol=1e-6)
-    assert abs(belief.belief(K) - before).sum() > 1
+    np.testing.assert_allclose(belief.belief()[0], np.bincount(places, belief.weight[0], K), atol=1e-6)
+    assert abs(belief.belief() - before).sum() > 1
 
 
 def test_a_pooling_that_is_none_is_refused():
     with pytest.raises(ValueError, match='pooling: expected "sum" or "max", found \'mean\''):
-        new_filter().belief(K, "mean")
+        new_filter().belief("mean")
 
 
 def test_the_belief_sums_to_one_all_along():
@@ -255,7 +255,7 @@ def test_the_belief_sums_to_one_all_along():
         belief.resample()
         belief.predict(np.array([[0.5, 0.2]] * 3))
         belief.weigh(random_likelihood(step, 3))
-        np.testing.assert_allclose(belief.belief(K).sum(1), 1, rtol=1e-5)
+        np.testing.assert_allclose(belief.belief().sum(1), 1, rtol=1e-5)
 
 
 def life(likelihood, seed, resample):

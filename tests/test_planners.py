@@ -50,6 +50,12 @@ def test_a_scan_is_its_sequence_whatever_there_is_to_see():
         assert plan(step, STATES[:5], rng()).tolist() == [action] * 5
 
 
+def test_a_scan_shorter_than_the_episode_is_refused_when_it_ends():
+    plan = planners.scan([LEFT, RIGHT])
+    with pytest.raises(ValueError, match="scan: expected an action for every step, found 2"):
+        plan(2, STATES[:5], rng())
+
+
 def test_each_robot_may_have_a_scan_of_its_own():
     plan = planners.scan(np.array([[LEFT, RIGHT], [FORWARD, LEFT]]))
     assert plan(0, STATES[:2], rng()).tolist() == [LEFT, FORWARD]

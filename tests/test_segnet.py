@@ -158,6 +158,26 @@ def test_views_that_the_pyramid_cannot_part_are_refused(size):
         segnet.predict(params, np.zeros((1, H, W, 3), np.uint8))
 
 
+@pytest.mark.parametrize("views", [np.zeros((1, 64, 64, 3)), np.zeros((1, 64, 64), np.uint8),
+                                   np.zeros((1, 64, 64, 4), np.uint8), np.zeros((64, 64, 3), np.uint8)])
+def test_views_that_are_no_bytes_of_three_colours_are_refused(views, params):
+    with pytest.raises(ValueError, match=r"views: expected bytes \(B, H, W, 3\), found"):
+        segnet.predict(params, views)
+
+
+@pytest.mark.parametrize(("change", "complaint"), [
+    ({"labels": np.full((2, 64, 64), 255, np.uint8)}, r"labels: .* each pixel 0\.\.9, found \(2, 64, 64\) up to 255"),
+    ({"labels": np.zeros((1, 64, 64), np.uint8)}, r"labels: .* found \(1, 64, 64\) up to 0 for views \(2, 64, 64, 3\)"),
+    ({"rgb": np.zeros((0, 64, 64, 3), np.uint8), "labels": np.zeros((0, 64, 64), np.uint8)}, "at least one view"),
+    ({"batch": 0}, "batch, epochs: expected at least 1 and at least 0, found 0 and 1"),
+    ({"epochs": -1}, "batch, epochs: expected .* found 4 and -1")])
+def test_what_cannot_be_learned_from_is_refused(change, complaint, params):
+    blank = np.zeros((2, 64, 64, 3), np.uint8)
+    task = {"rgb": blank, "labels": blank[..., 0], "epochs": 1, "batch": 4}
+    with pytest.raises(ValueError, match=complaint):
+        segnet.train(params, rng=np.random.default_rng(0), **task | change)
+
+
 def test_a_saved_net_is_read_back_as_it_was(tmp_path):
     params = segnet.new_params(np.random.default_rng(0))
     segnet.save(params, tmp_path / "net.npz", {"seed": 0})

@@ -201,6 +201,8 @@ def test_a_front_door_through_which_a_ball_would_fit_is_shut_to_it():
 def test_points_are_lists_or_arrays_of_two_numbers(two_rooms, ask):
     ask = getattr(two_rooms, ask)
     assert ask([[3.2, 1.0], [1.1, 0.7]]).tolist() == ask(np.array([[3.2, 1.0], [1.1, 0.7]])).tolist() == [True, False]
+    with pytest.raises(ValueError, match="xy: expected finite numbers, found nan"):
+        ask([[1.1, np.nan]])
     with pytest.raises(ValueError, match=r"xy: expected shape \(n, 2\), found \(4, 3\)"):
         ask(np.zeros((4, 3)))
 
