@@ -20,6 +20,12 @@ def marks_in_a_ruler_of_length_one(weights, u):
     return np.searchsorted(total, (u + np.arange(len(weights))) / len(weights), side="right").clip(0, len(weights) - 1)
 
 
+def the_last_mark_falls_off(weights, u):
+    total = np.cumsum(weights)
+    M = len(total)
+    return np.minimum(np.searchsorted(total * (M / total[-1]), u + np.arange(M), side="right"), M - 1)
+
+
 def greatest_weight(places, weights, n_places):
     pooled = np.zeros(n_places)
     np.maximum.at(pooled, places, weights)
@@ -51,7 +57,8 @@ def keeps_the_old_belief(belief, likelihood, p_move):
 WRONG = {
     "8.1": [lambda: ([1, 2, 2, 3], [0, 1, 2, 3]), lambda: ([2, 3, 4, 4], [1, 2, 3, 4]),
             lambda: ([0, 1, 2, 3], [0, 1, 2, 3])],
-    "8.2": [marks_off_by_one, entry_0_gets_the_mark_on_its_end, marks_in_a_ruler_of_length_one],
+    "8.2": [marks_off_by_one, entry_0_gets_the_mark_on_its_end, marks_in_a_ruler_of_length_one,
+            the_last_mark_falls_off],
     "8.3": [lambda weights: 1 / (weights ** 2).sum(), lambda weights: 1 / weights.sum() ** 2,
             lambda weights: (weights ** 2).sum() / weights.sum() ** 2],
     "8.4": [greatest_weight, how_many],

@@ -42,6 +42,8 @@ def grade_8_2(systematic_resample):
     expect("the four of the chapter, u = 0.4", systematic_resample(np.array([3, 1, 1, 1]) / 6, 0.4), [0, 0, 1, 3])
     expect("weights 1 2 3 4, u = 0.5", systematic_resample(np.array([1.0, 2, 3, 4]), 0.5), [1, 2, 3, 3])
     expect("no weight at entry 0, u = 0", systematic_resample(np.array([0, 0.5, 0.5]), 0.0)[0], 1)
+    just_below_1 = np.nextafter(1, 0)
+    expect("no weight at entry 3, u just below 1", systematic_resample(np.array([1.0, 1, 1, 0]), just_below_1)[-1], 2)
     weights, copies = np.array([0.05, 0.6, 0, 0.25, 0.1]), np.zeros(5)
     for u in (np.arange(500) + 0.5) / 500:
         copies += np.bincount(systematic_resample(weights, u), minlength=5) / 500

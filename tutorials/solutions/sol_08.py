@@ -9,11 +9,14 @@ def predict_resampling():
 
 
 def systematic_resample(weights, u):
-    """A mark on each unit, shifted by u; a mark on an end belongs to the next piece."""
+    """A mark on each unit, shifted by u; a mark on an end belongs to the next piece.
+
+    For u just below 1 rounding puts the last mark on the end of the ruler: it belongs to the last piece there is.
+    """
     total = np.cumsum(weights)
     M = len(total)
     marks = u + np.arange(M)
-    return np.minimum(np.searchsorted(total * (M / total[-1]), marks, side="right"), M - 1)
+    return np.minimum(np.searchsorted(total * (M / total[-1]), marks, side="right"), np.flatnonzero(weights)[-1])
 
 
 def effective(weights):
