@@ -44,11 +44,12 @@ def run(args):
         if size < 1:
             raise ValueError(f"--{name}: expected at least 1, found {size}")
     cells, folder = [cell_of(words) for words in args.cell], Path(args.folder)
-    check_folder("folder", folder)
+    check_folder("folder", args.folder)
     files = {cell: folder / f"starts-{cell.name}.npz" for cell in cells}
     plans = {cell.world: folder / f"home-{cell.world}.json" for cell in cells}
     todo = [cell for cell, path in files.items()
-            if not (plans[cell.world].exists() and path.exists() and load_arrays(path)[1] == sizes)]
+            if not (plans[cell.world].exists() and path.exists() and load_arrays(path)[1] == sizes
+                    and (path.with_suffix(".png").exists() or not args.picture))]
     if not todo:
         return
     stage, homes = Stage("starts"), {world: make_home(world) for world in {cell.world for cell in todo}}
@@ -81,7 +82,7 @@ def cell_of(words):
 
 
 def starts_of(cell, world, n_training, n_tests, n_validation):
-    """Starts of a cell of Table I; tests of one cell are no tests of another."""
+    """Starts of a cell of Table I; tests of one cell are no tests of another (whose gap differs by 1 mm at least)."""
     gap = cell.t_xy_m, np.radians(cell.t_theta_deg)
     return draw_starts(world, *gap, n_training, n_tests, n_validation, np.random.default_rng(cell.entropy))
 

@@ -18,7 +18,7 @@ import numpy as np
 from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
-from .experiment import Cell, costs, costs_of, now, to_bytes
+from .experiment import Cell, costs, costs_of, made_from, now, to_bytes
 from .files import check_folder, load_json, write_whole
 from .gaps import poses_beyond
 from .groundwork import load_starts, prepare, taught_net
@@ -27,7 +27,7 @@ from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, finished, path_of, run_jobs
+from .table import Settings, agree, check_parts, finished, path_of, run_jobs
 from .terminal import executor
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
@@ -62,6 +62,9 @@ def run(args):
     if todo:
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
+            for name, (_, cell) in jobs.items():
+                if name not in todo:
+                    check_parts(path_of(out, name), senses[cell.world])
             starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
             of_nets = {(choice.point, choice.other): choice.of_net for choice, _ in todo.values() if choice.of_net}
             nets = {name: taught_net(out, SETTINGS, **options) for name, options in of_nets.items()}
@@ -104,7 +107,7 @@ def measure(choice, cell, senses, starts, settings, net=None):
     """Outcomes of MV and of Ours under a choice, and what they cost; `net` in the place of that of the senses."""
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
-    senses, grid = replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
+    parts, senses, grid = made_from(senses), replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
     beyond = partial(poses_beyond, senses.world, starts["tests"], cell.t_xy_m, np.radians(cell.t_theta_deg))
     with in_place(choice.constants):
         senses.net = None if choice.true_labels else net or senses.net
@@ -119,10 +122,11 @@ def measure(choice, cell, senses, starts, settings, net=None):
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):
             episode.train_nnql(senses, robot, grid, training, learning, choice.rules, store=store)
-        result = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
-                                                       rules=choice.rules))
-                  for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}
-    return {"name": name_of(choice, cell), "tests": result}, costs(senses, began, sum(map(len, store.values)))
+        tests = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
+                                                      rules=choice.rules))
+                 for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}
+    result = {"name": name_of(choice, cell), "made from": parts, "tests": tests}
+    return result, costs(senses, began, sum(map(len, store.values)))
 
 
 @contextmanager

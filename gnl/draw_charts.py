@@ -35,7 +35,7 @@ def _heat_map(points, gaps_m, gaps_deg):
             value = points.get((m, deg))
             page.box(x + 1, y + 1, x + w - 1, y + h - 1, FAINT if value is None else shade(value))
             if value is not None:
-                page.text((x + w / 2, y + h / 2), f"{round(value, 1):+g}", 12, INK, "mm")
+                page.text((x + w / 2, y + h / 2), f"{round(value, 1) + 0.0:+g}", 12, INK, "mm")
     words = "least distance (and turn) to a test start"
     page.text((left + w * len(gaps_m) / 2, h * len(gaps_deg) + 32), words, 12, QUIET, "mm")
     return page.picture()
@@ -52,12 +52,13 @@ def curves(of_world, width=260, height=190):
     """Right answers by checkpoint, Ours with its 95 % interval: {world: {method: (C, checkpoints) in 0..1}}."""
     plots = {}
     for world, methods in of_world.items():
-        n, plots[world] = next(iter(methods.values())).shape[1], {}
+        n, plots[world] = next(iter(methods.values())).shape[1], {}  # n checkpoints in every world
         for name, values in methods.items():
             mean, *band = 100 * np.array([over_cells(v, np.random.default_rng(0)) for v in values.T]).T
             plots[world][name] = range(n), mean, *(band if name == "Ours" else [])
     shown = np.concatenate([line for plot in plots.values() for _, *of_name in plot.values() for line in of_name])
-    low, high = 10 * int(shown.min() // 10), 10 * int(shown.max() // 10 + 1)
+    high = min(100, 10 * int(shown.max() // 10 + 1))
+    low = min(10 * int(shown.min() // 10), high - 10)
     ticks = {i: str(i + 1) for i in range(n)}, {percent: f"{percent} %" for percent in range(low, high + 1, 10)}
     return sheet([lines(plot, *ticks, "checkpoint", width, height, LINES) for plot in plots.values()],
                  [f"home {world}: right after five looks" for world in plots])

@@ -45,8 +45,8 @@ class Map(Canvas):
         """Where points are in the picture: (..., 2) m -> (..., 2) px."""
         return self.shift + (np.asarray(xy, float) - self.upper_left) * self.px_per_m * [1, -1]
 
-    def _taken(self, xy):
-        """The same for (n, 2) m, from where names of rooms keep away from now on."""
+    def _mark(self, xy):
+        """The same for (n, 2) m, and from now on names of rooms keep away from there."""
         self.marks = np.append(self.marks, xy, 0)
         return self.at(xy)
 
@@ -59,16 +59,16 @@ class Map(Canvas):
 
     def robot(self, pose, colour=ROBOT):
         """A robot, and where it looks."""
-        self.dial(self._taken([pose[:2]])[0], pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
+        self.dial(self._mark([pose[:2]])[0], pose[2], max(ROBOT_RADIUS_M * self.px_per_m, 7), colour)
 
     def starts(self, poses, colour=ROBOT):
         """Many poses, each a little arrow."""
-        for middle, pose in zip(self._taken(np.asarray(poses)[:, :2]), poses, strict=True):
+        for middle, pose in zip(self._mark(np.asarray(poses)[:, :2]), poses, strict=True):
             self.arrow(middle, pose[2], 15, colour)
 
     def path(self, poses, colour=ROBOT):
         """The way along some poses, a dot at each."""
-        points = self._taken(np.asarray(poses)[:, :2])
+        points = self._mark(np.asarray(poses)[:, :2])
         self.line(points, (*colour, 170), 2)
         for point in points:
             self.disc(point, 3, colour, PAPER)
@@ -79,7 +79,7 @@ class Map(Canvas):
         total = np.cumsum(weight, dtype=float)
         chosen = np.searchsorted(total, (np.arange(n) + 0.5) / n * total[-1])
         dots = np.stack([x, y], 1)[chosen]
-        for dot, tip in zip(self._taken(dots), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
+        for dot, tip in zip(self._mark(dots), self.at(dots + 0.15 * _ahead(theta[chosen])), strict=True):
             self.line([dot, tip], (*colour, 70))
             self.disc(dot, 1.5, (*colour, 80))
 

@@ -189,7 +189,7 @@ def by_heart(results):
     rows = [[name, *(interval(gains(group, "Ours", other, of)) for other, of in pairs)]
             for name, group in groups(results, T_XY)]
     heads = [f"Ours - {other}, {'tests' if of is right else 'training starts'}" for other, of in pairs]
-    return ("From the tests, and from as many of the starts of its own training, with new luck.\n\n"
+    return ("From the tests, and from as many of the starts of its own training, evenly spread, with new luck.\n\n"
             + markdown(["", *heads], rows))
 
 
@@ -218,14 +218,15 @@ def cost(costs):
     seconds, training = (sum(part["seconds"] for part in parts)
                          for parts in (costs, [of_cell["of training"] for of_cell in costs]))
     rows.append(["all", f"{1000 * seconds / views:.2f}", f"from {sum(VIEW_MS.values()):.0f} on"])
-    machines = Counter(of_cell["machine"] for of_cell in costs)
-    versions = ", ".join(f"{name} {version}" for name, version in costs[0]["versions"].items())
+    machines = dict.fromkeys(of_cell["machine"] for of_cell in costs)
+    versions = dict.fromkeys(", ".join(f"{name} {version}" for name, version in of_cell["versions"].items())
+                             for of_cell in costs)
     memory = max(of_cell["peak MB"] for of_cell in costs)
     unit, size_s = ("hours", 3600) if seconds >= 3600 else ("minutes", 60)
     return (f"{views} views in {seconds / size_s:.2f} {unit}, summed over cells that ran side by side, "
             f"{training / size_s:.2f} of them for the episodes of training; at most {memory:.0f} MB a process; "
-            f"{', '.join(machines)}; {versions}. Milliseconds a view; the paper does not say whether its 18 hold the "
-            "net, and names none for rendering, filter and learning:\n\n"
+            f"{', '.join(machines)}; {' or '.join(versions)}. Milliseconds a view; the paper does not say whether its "
+            "18 hold the net, and names none for rendering, filter and learning:\n\n"
             + markdown(["stage", "ours", "the paper"], rows))
 
 

@@ -74,15 +74,20 @@ def jobs_of(out, settings, cells, todo, jobs, pool):
     ValueError before the first of a home, if one that is done was made from another home, net or classifier
     """
     for world, senses in prepare(out, settings, todo, jobs, pool):
-        here = made_from(senses)
-        for path in (path_of(out, cell.name) for cell in cells if cell.world == world and cell not in todo):
-            there = load_json(path, "the outcomes of a cell").get("made from")
-            if there != here:
-                raise ValueError(f"{path}: expected a cell made from {here}, as new ones are, found one made from "
-                                 f"{there}; name another folder with --out")
+        for cell in cells:
+            if cell.world == world and cell not in todo:
+                check_parts(path_of(out, cell.name), senses)
         for cell in todo:
             if cell.world == world:
                 yield cell.name, run_cell, cell, senses, load_starts(out, cell, settings), asdict(settings)
+
+
+def check_parts(path, senses):
+    """ValueError if a finished cell was made from another home, net or classifier than new ones will be."""
+    here, there = made_from(senses), load_json(path, "the outcomes of a cell").get("made from")
+    if there != here:
+        raise ValueError(f"{path}: expected a cell made from {here}, as new ones are, found one made from "
+                         f"{there}; name another folder with --out")
 
 
 def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
@@ -90,16 +95,26 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
 
     jobs : may be made one by one; those that are there are worked on while the next one is made
     """
-    waiting = {pool.submit(*job): name for name, *job in jobs}
-    n_jobs, stage = len(waiting), Stage(name_of_stage)
-    stage.note(f"0 of {n_jobs} cells")
-    while waiting:
-        ready, _ = wait(waiting, timeout=1, return_when=FIRST_COMPLETED)
+    waiting = {}
+
+    def keep(timeout):
+        ready, _ = wait(waiting, timeout, FIRST_COMPLETED)
         for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
             name, (result, costs) = waiting.pop(future), future.result()
             path = path_of(out, name)
             write_whole(costs_of(path), to_bytes(costs))
             write_whole(path, to_bytes(result))
+
+    try:
+        for name, *job in jobs:
+            waiting[pool.submit(*job)] = name
+    except BaseException:
+        keep(0)
+        raise
+    n_jobs, stage = len(waiting), Stage(name_of_stage)
+    stage.note(f"0 of {n_jobs} cells")
+    while waiting:
+        keep(1)
         done = n_jobs - len(waiting)
         rate = done * n_episodes / stage.seconds
         stage(done / n_jobs, f"{done} of {n_jobs} cells, {rate:.0f} episodes/s")
@@ -143,10 +158,12 @@ def gap_of(name):
 
 
 def agree(out, settings):
-    """ValueError if a folder of results has other settings."""
+    """ValueError if a folder of results has other settings; a run that was stopped at once left no results."""
     path = out / "settings.json"
     if path.exists():
-        check_settings(path, load_json(path, "settings"), settings)
+        there = load_json(path, "settings")
+        if any(out.glob("cells/[!.]*")) or any(out.glob("data/starts-*")):
+            check_settings(path, there, settings)
 
 
 def finished(out, name, load, settings=None):

@@ -15,7 +15,10 @@ CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser of command lines that complains in one line."""
+    """A parser of command lines that complains in one line, and knows options by their whole names."""
+
+    def __init__(self, **options):
+        super().__init__(allow_abbrev=False, **options)
 
     def error(self, message):
         """End with exit status 2."""
@@ -149,7 +152,7 @@ def guarded(program, run, *args):
     except BrokenPipeError:  # who reads the output has read enough: `... | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(128 + signal.SIGPIPE)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, MemoryError) as error:
         status, line = 2, str(error).replace("\n", " ")
     except BrokenExecutor:
         status, line = 1, "a process beside this one was ended from outside; what was finished is kept"

@@ -17,7 +17,7 @@ from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Rules
-from gnl.experiment import to_bytes
+from gnl.experiment import costs_of, made_from, to_bytes
 from gnl.files import write_whole
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
@@ -71,7 +71,7 @@ OTHER = Choice("a point", "other", Rules(length=3, pooling="max"), {"k": 16}, Mo
 @pytest.mark.parametrize(("choice", "net"), [(OURS, None), (OURS, {"weights": 2}), (OTHER, None)],
                          ids=["ours", "another net", "other"])
 def test_a_choice_holds_in_learning_and_in_both_tests_which_have_the_same_luck(choice, net, parts, monkeypatch):
-    senses, starts, height = replace(parts[0], net={"weights": 1}), parts[1], camera.HEIGHT_M
+    senses, starts, height = replace(parts[0], net={"weights": np.array(1)}), parts[1], camera.HEIGHT_M
     gcn, learnt, trained, tested, at_once = senses.gcn, [], [], [], episode.SIDE_BY_SIDE
 
     def learn_places(senses, grid, n_views, seed, draw, **how):
@@ -243,6 +243,26 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
     expected = ["k = 1", "k = 16", "k = 64", *(f"k = 64, alpha = 1{seed}" for seed in (
         "", ", seed 1", ", seed 2", ", seed 3", ", seed 4"))]
     assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == expected
+
+
+def test_runs_of_another_net_are_refused_before_new_ones_are_compared_with_them(tmp_path, parts, monkeypatch, capsys):
+    senses, starts = parts
+    ours, costs = ablate.measure(OURS, CELL, senses, starts, Settings())
+    assert ours["made from"] == made_from(senses)
+    edges = next(choice for choice in CHOICES if choice.point == "edges")
+    for choice, cell in itertools.product([OURS, TRUE_LABELS], ablate.CELLS):
+        name = ablate.name_of(choice, cell)
+        result = ours | {"name": name, "made from": made_from(senses) | {"net": "12345678"}}
+        for path, value in ((path_of(tmp_path, name), result), (costs_of(path_of(tmp_path, name)), costs)):
+            write_whole(path, to_bytes(value))
+    for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809), senses)),
+                        ("executor", contextlib.nullcontext)):
+        monkeypatch.setattr(ablate, name, value)
+    with pytest.raises(SystemExit) as exit:
+        main(["ablate", "--out", str(tmp_path), "--points", "edges"])
+    assert exit.value.code == 2
+    assert "'net': '12345678'" in capsys.readouterr().err.split("found one made from")[1]
+    assert not path_of(tmp_path, ablate.name_of(edges, CELL)).exists()
 
 
 def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():

@@ -65,7 +65,8 @@ def test_each_command_has_help(capsys, command):
     assert capsys.readouterr().out.startswith(f"usage: python -m gnl {command}")
 
 
-@pytest.mark.parametrize("line", ["", "dance", "graph", "demo", "graph a.png --loose", "demo --tests many"])
+@pytest.mark.parametrize("line", ["", "dance", "graph", "demo", "graph a.png --loose", "demo --tests many",
+                                  "table --quic", "table --ou there"])
 def test_what_is_no_command_has_status_2(capsys, line):
     assert run(*line.split()) == 2
     out, err = capsys.readouterr()

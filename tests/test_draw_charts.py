@@ -108,7 +108,22 @@ def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_
     band = np.array(draw_charts.curves({800: methods}))
     pale = (np.array([255, 255, 255]) * 205 + np.array(draw_charts.LINES["Ours"]) * 50) / 255
     assert (abs(band - pale).max(2) <= 2).sum() > 500
+    assert ((abs(band - pale).max(2) <= 2).sum(0)[60:212] > 10).all()  # from side to side
     assert (abs(inside - pale).max(2) <= 2).sum() < 50
+
+
+@pytest.mark.parametrize(("shares", "wanted"), [
+    ([1.0, 1.0], ["90 %", "100 %"]), ([0.5, 1.0], ["50 %", "60 %", "70 %", "80 %", "90 %", "100 %"]),
+    ([0.0, 0.0], ["0 %", "10 %"]), ([0.31, 0.39], ["30 %", "40 %"]), ([0.3, 0.4], ["30 %", "40 %", "50 %"])])
+def test_an_axis_of_shares_holds_them_and_ends_at_100_percent(written, shares, wanted):
+    draw_charts.curves({800: {"Ours": np.tile(shares, (3, 1))}})
+    assert [words for *_, words in written if words.endswith(" %")] == wanted
+
+
+def test_nothing_has_no_sign_of_a_loss(written):
+    draw_charts.heat_maps({800: {(0.2, 10): -6.7e-16, (0.4, 10): -0.04, (0.6, 10): -0.06}}, (0.2, 0.4, 0.6), (10,))
+    assert {words for *_, words in written} >= {"+0", "-0.1"}
+    assert "-0" not in {words for *_, words in written}
 
 
 def test_a_histogram_has_bars_as_high_as_they_are_many_each_in_its_place():

@@ -240,6 +240,13 @@ def test_costs_of_a_short_run_are_told_in_minutes():
     assert report.cost([short]).startswith("1000 views in 0.20 minutes, summed over cells that ran side by side, 0.15 ")
 
 
+def test_machines_and_versions_are_those_of_all_cells():
+    parts = [{"seconds": 12.0, "views": 1000, "of stages": {"graph": 3}, "of training": {"seconds": 9.0, "views": 800},
+              "machine": machine, "peak MB": 123.0, "versions": {"numpy": version, "scipy": "1.17"}}
+             for machine, version in (("A", "2.0"), ("B", "2.3"), ("A", "2.0"))]
+    assert "; A, B; numpy 2.0, scipy 1.17 or numpy 2.3, scipy 1.17. " in report.cost(parts)
+
+
 def test_intervals_of_few_cells_are_told_to_say_little(written):
     assert "from a bootstrap of whole cells: of so few cells they say nothing." in written
 

@@ -282,20 +282,45 @@ def test_damaged_settings_are_named(tmp_path, capsys, damage):
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [damage]
 
 
-def test_what_is_finished_is_kept_though_others_failed(tmp_path):
-    class AtOnce:
-        def submit(self, function):
-            future = Future()
-            try:
-                future.set_result(function())
-            except ArithmeticError as error:
-                future.set_exception(error)
-            return future
+class AtOnce:
+    """An executor that does what it is told before it answers."""
 
+    def submit(self, function):
+        future = Future()
+        try:
+            future.set_result(function())
+        except ArithmeticError as error:
+            future.set_exception(error)
+        return future
+
+
+def test_what_is_finished_is_kept_though_others_failed(tmp_path):
     jobs = [*((f"bad {i}", lambda: 1 / 0) for i in range(9)), ("good", lambda: ({"name": "good"}, {}))]
     with pytest.raises(ZeroDivisionError):
         table.run_jobs(tmp_path, jobs, 10, AtOnce(), "table")
     assert {path.name for path in tmp_path.glob("*/*")} == {"good.json"}
+
+
+def test_what_is_finished_is_kept_though_the_next_job_cannot_be_made(tmp_path):
+    def jobs():
+        yield "good", lambda: ({"name": "good"}, {})
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        table.run_jobs(tmp_path, jobs(), 10, AtOnce(), "table")
+    assert {path.name for path in tmp_path.glob("*/*")} == {"good.json"}
+
+
+def test_a_folder_that_holds_nothing_yet_takes_other_settings(tmp_path):
+    table.agree(tmp_path, {"tests": 7})
+    (tmp_path / "settings.json").write_text('{"tests": 12}')
+    table.agree(tmp_path, {"tests": 7})
+    for there in "cells/a.json", "data/starts-a.npz":
+        (tmp_path / there).parent.mkdir()
+        (tmp_path / there).write_text("")
+        with pytest.raises(ValueError, match="expected results of tests 7, found some of 12"):
+            table.agree(tmp_path, {"tests": 7})
+        (tmp_path / there).unlink()
 
 
 def test_the_quick_table_is_two_cells_of_one_home():

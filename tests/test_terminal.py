@@ -98,7 +98,7 @@ def test_a_run_that_ends_well_has_status_0_and_says_nothing(capsys):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("kind", [ValueError, OSError, FileNotFoundError])
+@pytest.mark.parametrize("kind", [ValueError, OSError, FileNotFoundError, MemoryError])
 def test_a_mistake_is_one_line_on_stderr_and_status_2(capsys, kind):
     assert leave(stop, kind("a.png: expected an image,\nfound\n\na song")) == 2
     out, err = capsys.readouterr()

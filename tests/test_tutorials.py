@@ -6,7 +6,9 @@ import functools
 import importlib
 import importlib.util
 import json
+import os
 import re
+import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
@@ -69,6 +71,20 @@ def test_an_error_names_its_line_of_the_page(tmp_path):
     with pytest.raises(ZeroDivisionError) as error:
         runner.run(path, tmp_path)
     assert error.traceback[-1].lineno + 1 == 7
+
+
+def test_a_page_is_read_as_utf_8_wherever_one_is(tmp_path):
+    path = tmp_path / "page.md"
+    path.write_bytes("```python\nprint(len('ä'))\n```\n\n```text\n1\n```\n".encode())
+    code = (f"import sys; sys.path.insert(0, {str(TUTORIALS)!r}); import locale, run; "
+            f"assert locale.getpreferredencoding(False) != 'UTF-8'; run.run({str(path)!r}, {str(tmp_path)!r})")
+    here = {"PATH": os.environ["PATH"], "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "C"}
+    subprocess.run([sys.executable, "-c", code], env=here, check=True, timeout=60)
+
+
+def test_a_fence_that_prints_what_nobody_wrote_down_passes_and_an_output_belongs_to_the_last_fence(tmp_path):
+    runner.run(page(tmp_path, "```python\nprint(1)\n```\n\n```python\nprint(2)\n```\n\n```sh\nls\n```\n\n"
+                              "```text\n2\n```\n\n```text\nno output\n```\n"), tmp_path)
 
 
 def test_a_page_runs_in_its_folder_and_leaves_the_current_one_as_it_was(tmp_path):

@@ -2,7 +2,8 @@
 
     python tutorials/run.py [CHAPTER ...]        all chapters, a line each
 
-A text fence right after a python fence is its output; three dots in it stand for anything.
+The first text fence after a python fence, and before the next, is its output; three dots in it stand for anything. What
+has none is run, and what it prints is not compared.
 """
 
 import contextlib
@@ -19,7 +20,7 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 def run(page, folder=HERE):
     """Run a page in a folder; ValueError at the first output that is not what is written."""
-    text, namespace, printed = Path(page).read_text(), {"__name__": "__main__"}, None
+    text, namespace, printed = Path(page).read_text(encoding="utf-8"), {"__name__": "__main__"}, None
     before = os.getcwd()
     os.chdir(folder)
     try:

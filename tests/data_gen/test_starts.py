@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from data_gen import starts as starts_module
 from data_gen.__main__ import main
@@ -110,6 +111,33 @@ def test_a_home_is_drawn_with_its_starts_and_again_if_it_is_lost(tmp_path):
     assert World.load(plan).plan == make_home(801).plan
     plan.unlink()
     assert drawn() == first
+
+
+def test_a_picture_is_drawn_where_it_is_asked_for_and_lacking_and_changes_no_starts(tmp_path):
+    def drawn(*options):
+        words = ["--cell", "801", "0.2", "10", "0", "--training", "5", "--tests", "3", *options]
+        with pytest.raises(SystemExit) as exit:
+            main(["starts", str(tmp_path), *words])
+        assert exit.value.code == 0
+        return {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    first = drawn()
+    with_picture = drawn("--picture")
+    name, = with_picture.keys() - first.keys()
+    assert name == "starts-801-0.2m-10deg-seed0.png"
+    with Image.open(tmp_path / name) as picture:
+        assert picture.size[0] > 720
+    assert {other: with_picture[other] for other in first} == first
+    assert drawn() == with_picture
+
+
+def test_a_folder_without_a_name_is_one_line(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as exit:
+        main(["starts", "", "--cell", "801", "0.2", "10", "0"])
+    assert exit.value.code == 2
+    assert capsys.readouterr().err == "python -m data_gen: folder: expected a folder, found no name\n"
+    assert not list(tmp_path.iterdir())
 
 
 def test_starts_are_not_drawn_in_another_home(tmp_path, capsys):
