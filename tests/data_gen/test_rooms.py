@@ -12,6 +12,9 @@ import pytest
 from scipy import ndimage
 
 import data_gen
+from data_gen.furnish import ALONE, AT_WALL
+from data_gen.furniture import ROOMS
+from data_gen.layout import turn
 from data_gen.rooms import home_plan, make_home
 from gnl.classes import CLASSES
 from gnl.world import World
@@ -215,6 +218,97 @@ def test_home_is_the_world_of_its_plan():
     home = make_home(np.int64(3), aliasing=0.5)
     assert home.plan == home_plan(3, 0.5)
     assert home.is_free(home.free_poses(20, np.random.default_rng(0))[:, :2]).all()
+
+
+def by_room(plan):
+    """Type and polygon of each room, and its things: name, middle, unit vector to its front, polygon, whole object."""
+    for room in plan["rooms"]:
+        things = []
+        for thing in plan["objects"]:
+            polygon = np.array(thing["polygon"])
+            back, front = polygon[:2].mean(0), polygon[2:].mean(0)  # corners begin at the back
+            if covers(room["polygon"], *polygon.mean(0)):
+                look = (front - back) / np.hypot(*(front - back))
+                things.append((thing["name"], polygon.mean(0), look, polygon, thing))
+        yield room["type"], np.array(room["polygon"]), things
+
+
+def test_each_chair_looks_at_its_table(homes):
+    chairs = 0
+    for plan in homes:
+        for _, _, things in by_room(plan):
+            tables = [polygon for name, *_, polygon, _ in things if name in ("desk", "dining table", "kitchen table")]
+            for name, _, look, polygon, _ in things:
+                if name == "chair":
+                    x, y = (polygon[2:].mean(0) + np.linspace(0, 0.5, 51)[:, None] * look).T
+                    assert any(covers(table, x, y).any() for table in tables)
+                    chairs += 1
+    assert chairs > 100
+
+
+def test_most_televisions_look_at_the_sofa_that_looks_at_them(homes):
+    at_each_other = []
+    for plan in homes:
+        for kind, _, things in by_room(plan):
+            sofas, tvs = ([thing for thing in things if thing[0] == name] for name in ("sofa", "tv"))
+            if kind == "living room" and tvs:
+                (_, tv, tv_looks, *_), (_, sofa, sofa_looks, *_) = tvs[0], sofas[0]
+                at_each_other.append(tv_looks @ sofa_looks < -0.99 and (tv - sofa) @ sofa_looks > 1)
+    assert len(at_each_other) > 0.9 * len(homes)
+    assert np.mean(at_each_other) > 0.5  # one wall in four would be luck
+
+
+def test_the_floor_before_what_stands_at_a_wall_is_free_of_what_stands_alone(homes):
+    rules = defaultdict(set)
+    for pieces in ROOMS.values():
+        for name, words, _ in pieces:
+            rules[name] |= {rule.split()[0] for rule in words.split(" or ")}
+    alone = {name for name, of_name in rules.items() if of_name <= {*ALONE}} - {"carpet"}
+    at_wall = {name for name in alone if rules[name] <= {*AT_WALL}}
+    for plan in homes:
+        for _, _, things in by_room(plan):
+            standing = [thing for thing in things if thing[0] in alone and thing[-1]["z0"] < 0.1]
+            fronts = [np.array([left, right, right + 0.49 * look, left + 0.49 * look]) + 0.005 * look
+                      for name, _, look, (*_, right, left), _ in standing if name in at_wall]
+            blocked = [(i, j) for i, j in overlaps(fronts, [polygon for *_, polygon, _ in standing])] if fronts else []
+            assert not blocked
+
+
+@pytest.mark.parametrize("name", ["nightstand", "chair"])
+def test_pairs_and_sets_are_alike_and_there_are_some(homes, name):
+    pairs = 0
+    for plan in homes:
+        for kind, _, things in by_room(plan):
+            sizes = [(*np.hypot(*np.diff(polygon[:3], axis=0).T), thing["height"])
+                     for of_name, _, _, polygon, thing in things if of_name == name]
+            if kind in ("bedroom", "dining room", "kitchen"):
+                np.testing.assert_allclose(sizes, sizes[:1] * len(sizes), atol=2e-3)
+                pairs += len(sizes) > 1
+    assert pairs > 10
+
+
+def test_some_things_stand_on_carpets(homes):
+    assert sum(thing["z0"] == 0.01 for plan in homes for thing in plan["objects"]) > 20
+
+
+def test_a_layout_is_mirrored_and_turned_in_all_eight_ways():
+    ways = {json.dumps(turn(np.array([[0.0, 0.0, 1.0, 2.0]]), 5.0, 7.0, np.random.default_rng(seed)))
+            for seed in range(100)}
+    assert ways == {json.dumps([[x, y, x + w, y + d]]) for W, D, w, d in ((5.0, 7.0, 1.0, 2.0), (7.0, 5.0, 2.0, 1.0))
+                    for x in (0.0, W - w) for y in (0.0, D - d)}
+
+
+def test_corridors_lead_to_a_living_room_or_to_the_outer_wall(homes):
+    beyond = set()
+    for plan in homes:
+        corridor = next(np.array(room["polygon"]) for room in plan["rooms"] if room["type"] == "corridor")
+        front_door = next(door["segment"] for door in plan["doors"] if door["state"] == "closed")
+        entrance = np.reshape(front_door, (2, 2)).mean(0)
+        along = corridor.mean(0) - entrance
+        ahead, left = along / np.hypot(*along), np.array([-along[1], along[0]]) / np.hypot(*along)
+        x, y = (entrance + 2 * along + 0.1 * ahead + np.linspace(-0.6, 0.6, 25)[:, None] * left).T
+        beyond.add(tuple(room["type"] for room in plan["rooms"] if covers(room["polygon"], x, y).any()))
+    assert beyond == {(), ("living room",)}
 
 
 def test_flat_keeps_the_same_laws(flat):
