@@ -176,18 +176,18 @@ def _tick(page, at, right=None):
 
 
 def _actions(q, chosen, width_px=2 * VIEW_PX + GAP_PX):
-    """The values of the actions (A,), if known, as bars from a common zero; the chosen one in orange."""
-    left, line_px = 60, draw.LINE_PX
+    """The values of the actions (A,), if known, as beads on one scale, the best farthest right; the chosen one orange.
+
+    Bars would mislead: where all values are below zero, the best has the shortest.
+    """
+    left, right, line_px = 70, width_px - 54, draw.LINE_PX
     page = canvas.Canvas(width_px, line_px * len(ACTIONS))
-    low, high = (min(0, *q), max(0, *q)) if q is not None else (0, 0)
-    scale = (width_px - left - 44) / max(high - low, 1e-9)
-    zero = left - low * scale
     for a, name in enumerate(ACTIONS):
         y, ink = line_px * a + 9, canvas.ROBOT if a == chosen else canvas.INK
         page.text((0, y), name, 12, ink)
         if q is not None:
-            x0, x1 = sorted((zero, zero + q[a] * scale))
-            page.polygon([(x0, y - 5), (x1, y - 5), (x1, y + 5), (x0, y + 5)], ink if a == chosen else canvas.BAR)
-            page.line([(zero, y - 7), (zero, y + 7)])
+            page.line([(left, y), (right, y)], canvas.FAINT, 2)
+            x = left + (right - left) * (q[a] - min(q)) / max(max(q) - min(q), 1e-9)
+            page.disc((x, y), 6, ink if chosen is None or a == chosen else canvas.BAR)
             page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
     return page.picture()

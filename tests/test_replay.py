@@ -158,12 +158,22 @@ def test_between_two_looks_the_robot_goes_the_short_way_and_the_words_say_how(pa
                                               *[("turning right", 1)] * 3, ("after a bump",)]
 
 
-def test_bars_of_actions_go_to_the_right_for_more_and_the_chosen_one_is_orange():
-    picture = np.array(replay._actions(np.array([0.2, -0.1, 0.4]), 2))[:, 60:]
-    left, right = zip(*(np.nonzero((picture[19 * a + 5:19 * a + 8] == colour).all(2))[1][[0, -1]] for a, colour in
-                        enumerate((canvas.BAR, canvas.BAR, canvas.ROBOT))), strict=True)
-    assert left[1] < right[1] < left[0] < right[0] < right[2]
-    assert left[0] == pytest.approx(left[2], abs=2)
+@pytest.mark.parametrize("shift", [0, -0.5])
+def test_beads_of_actions_lie_farther_right_for_more_and_the_chosen_one_is_orange(shift):
+    def beads(chosen, *colours):
+        picture = np.array(replay._actions(np.array([0.2, -0.1, 0.4]) + shift, chosen))[:, 60:350]
+        lines = [picture[19 * a:19 * a + 19] for a in range(3)]
+        return [np.nonzero((line == colour).all(2))[1].mean() for line, colour in zip(lines, colours, strict=True)]
+
+    left, right, forward = beads(2, canvas.BAR, canvas.BAR, canvas.ROBOT)
+    assert right < left < forward
+    assert (left - right) / (forward - right) == pytest.approx(0.6, abs=0.02)
+    assert beads(None, canvas.INK, canvas.INK, canvas.INK) == pytest.approx([left, right, forward], abs=1)
+
+
+def test_beads_of_equal_actions_lie_below_each_other():
+    picture = np.array(replay._actions(np.full(3, -0.2), None))[:, 60:350]
+    assert len({np.nonzero((picture[19 * a:19 * a + 19] == canvas.INK).all(2))[1].mean() for a in range(3)}) == 1
 
 
 def test_the_panels_are_of_the_look_and_ticks_of_the_answers_so_far(parts, looks, monkeypatch):
