@@ -21,6 +21,7 @@ from .nn import softmax
 from .other_stores import BruteForce, Endless, OfAnyAction, Shrunk
 from .particles import FLOOR, ParticleFilter
 from .places import wrap_angle
+from .planners import greedy  # itself, when another one stands in its place
 from .ranks import reciprocal_ranks
 from .robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
 from .scene_graph import VIEW_PX
@@ -94,6 +95,11 @@ def of_the_view(scores, places, **_others):
 def by_rank(scores):
     """Likelihood of a place: its reciprocal rank."""
     return reciprocal_ranks(scores) + FLOOR
+
+
+def greedy_once(nnql):
+    """Planner: the action of the greatest Q-value at the first view, again and again."""
+    return planners.go_on(greedy(nnql))
 
 
 def first_of_equals(q, _rng):
@@ -224,7 +230,7 @@ CHOICES = [
     *_five_times("mean of the neighbours", "and, as 64 more, that of the action", Rules(state=without_context),
                  constants={"nnql.NNQL": partial(Shrunk, pull=64)}),
     *_five_times("actions by chance", "all", of_training={"nnql.epsilon": np.ones_like}),
-    *_five_times("when to choose", "at the first view alone", constants={"planners.greedy": planners.go_on}),
+    *_five_times("when to choose", "at the first view alone", constants={"planners.greedy": greedy_once}),
     Choice("the same state again", "within 0.6", constants={"nnql.SAME": 0.6}),
     Choice("value of a new pair", "from 0", constants={"nnql.first_value": np.zeros_like}),
     Choice("value of a new pair", "from 1", constants={"nnql.first_value": np.ones_like}),

@@ -78,7 +78,8 @@ def run_cell(cell, senses, starts, settings=None):
         return {name: outcomes(grid, episode.run_all(shared, robot, grid, plan, poses, seed))
                 for name, plan in plans.items()}
 
-    plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]), "Ours+": planners.go_on(options)}
+    plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]),
+             "Ours+": planners.go_on(planners.greedy(options))}
     past = {i: planners.greedy(store.at(i)) for i in range(N_CHECKPOINTS)}
     tests = test({**plans, **past}, starts["tests"], testing)
     known = training[np.linspace(0, len(training) - 1, len(starts["tests"])).astype(int)]

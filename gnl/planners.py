@@ -40,16 +40,16 @@ def greedy(nnql):
     return plan
 
 
-def go_on(options):
-    """The option of the greatest value, chosen from the first view, then gone on with (Ours+)."""
-    chosen = None
+def go_on(plan):
+    """What a planner chooses at the first view, again and again (of the greatest of options.py's values: Ours+)."""
+    first = None
 
-    def plan(step, states, rng):
-        nonlocal chosen
+    def plan_once(step, states, rng):
+        nonlocal first
         if step == 0:
-            chosen = best_actions(options.q_values(states), rng)
-        return chosen
-    return plan
+            first = plan(step, states, rng)
+        return first
+    return plan_once
 
 
 def explore(nnql, epsilon):

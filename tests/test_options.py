@@ -118,7 +118,7 @@ def test_the_better_direction_is_found_where_it_depends_on_the_first_view():
         place = np.argsort(-state)[0 if rng.random() < (0.6 if good else 0.4) else 3]
         experience.watch(1, seen=view(kind)[None], actions=np.array([action]), states=state[None],
                          places=np.array([place]))
-    plan = planners.go_on(options_of(experience, 4, 100))
+    plan = planners.go_on(planners.greedy(options_of(experience, 4, 100)))
     kind = np.arange(60) % 2
     first = plan(0, np.stack([view(one) for one in kind]), rng)
     assert (first == kind).mean() > 0.9
@@ -133,7 +133,7 @@ class Worth:
 
 
 def test_each_episode_chooses_anew_from_its_first_view_and_among_equals_by_chance():
-    plan, rng = planners.go_on(Worth()), np.random.default_rng(0)
+    plan, rng = planners.go_on(planners.greedy(Worth())), np.random.default_rng(0)
     for first in ([[1, 3, 2], [5, 0, 0]], [[0, 0, 1], [0, 1, 0], [1, 0, 0]]):
         chosen = np.argmax(first, 1).tolist()
         assert [plan(step, np.roll(first, step, 1), rng).tolist() for step in range(3)] == [chosen] * 3
@@ -144,5 +144,5 @@ def test_each_episode_chooses_anew_from_its_first_view_and_among_equals_by_chanc
 def test_the_race_decides_between_options_that_experience_finds_alike():
     a, b = ranking(1, 2), ranking(11, 12)
     experience = lived(*[(a, action, b, 11) for action in range(N_ACTIONS)])
-    plan = planners.go_on(options_of(experience, 4, 1, worth=(0.2, 0.1, 0.3)))
+    plan = planners.go_on(planners.greedy(options_of(experience, 4, 1, worth=(0.2, 0.1, 0.3))))
     assert plan(0, np.stack([a, b]), np.random.default_rng(0)).tolist() == [2, 2]

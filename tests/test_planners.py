@@ -56,6 +56,13 @@ def test_a_scan_shorter_than_the_episode_is_refused_when_it_ends():
         plan(2, STATES[:5], rng())
 
 
+def test_who_goes_on_chooses_at_the_first_view_and_anew_in_a_new_episode():
+    plan = planners.go_on(lambda step, states, _rng: states + step)
+    for states in np.array([0, 1]), np.array([2, 0]):
+        for step in range(3):
+            np.testing.assert_array_equal(plan(step, states if step == 0 else states + 1, None), states)
+
+
 def test_each_robot_may_have_a_scan_of_its_own():
     plan = planners.scan(np.array([[LEFT, RIGHT], [FORWARD, LEFT]]))
     assert plan(0, STATES[:2], rng()).tolist() == [LEFT, FORWARD]
