@@ -278,6 +278,14 @@ def test_an_index_that_ade20k_does_not_have_is_named(tmp_path, capsys):
     assert_one_line(capsys, f"{path}: expected indices 0..150, found 0..151\n")
 
 
+@pytest.mark.parametrize(("index", "hint"), [(10, "; --ade20k for indices of ADE20K"),
+                                             (150, "; --ade20k for indices of ADE20K"), (151, "")])
+def test_indices_that_are_not_ours_are_taken_for_those_of_ade20k_if_it_has_them(tmp_path, capsys, index, hint):
+    path = write(tmp_path / "view.png", np.array([[0, index]], np.uint8))
+    assert run("graph", path) == 2
+    assert_one_line(capsys, f"{path}: expected indices 0..9, found 0..{index}{hint}\n")
+
+
 def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path, capsys):
     path = write(tmp_path / "view.png")
     (tmp_path / "taken").mkdir()

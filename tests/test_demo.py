@@ -20,6 +20,7 @@ from data_gen.rooms import make_home
 from gnl import demo
 from gnl import learned as parts_learned
 from gnl.__main__ import main
+from gnl.classes import N_CLASSES, WALL
 from gnl.files import load_arrays, save_arrays
 
 SMALLEST = [f"--{name}={n}" for name, n in {"net-epochs": 1, "gcn-views": 128, "gcn-epochs": 2, "gcn-batch": 32,
@@ -222,9 +223,11 @@ def test_the_tests_begin_where_nothing_was_learned_and_every_method_has_its_name
     assert not np.isin(starts, demo.World.load(FLAT).free_poses(len(starts), np.random.default_rng(5))).any()
 
 
-def test_all_that_the_demo_learns_from_is_in_the_names_of_its_files(monkeypatch, tmp_path, two_rooms):
-    def named(world=two_rooms, made_by="views", noise=1.0, **scale):
-        settings, keep = [], lambda _folder, _name, settings_, *_: settings.append(parts_learned.digest(settings_))
+@pytest.fixture
+def settings_of(monkeypatch, tmp_path, two_rooms):
+    """What a run would learn its parts with: the settings in the names of the files of net, GCN, scan and store."""
+    def settings_of(world=two_rooms, made_by="views", noise=1.0, **scale):
+        settings, keep = [], lambda _folder, _name, settings_, *_: settings.append({**settings_})
         monkeypatch.setattr(parts_learned, "kept", lambda *args: keep(*args) or SimpleNamespace(values=[]))
         monkeypatch.setattr(parts_learned, "load_views", lambda path: (None, {"by": made_by}))
         monkeypatch.setattr(demo, "render", lambda *_: (None, None))
@@ -236,9 +239,19 @@ def test_all_that_the_demo_learns_from_is_in_the_names_of_its_files(monkeypatch,
         demo.learn(args, demo.Scale(**scale), None, world, demo.PlaceGrid(world), None)
         return settings
 
-    _, *others = named()  # of the GCN, the scan, the store
+    return settings_of
+
+
+def test_all_that_the_demo_learns_from_is_in_the_names_of_its_files(settings_of):
+    _, *others = map(parts_learned.digest, settings_of())  # of the GCN, the scan, the store
     for other in ({"world": make_home(3)}, {"made_by": "others"}, {"noise": 2.0}, {"net_epochs": 9}, {"gcn_epochs": 9}):
-        assert not set(others) & set(named(**other)), other
+        assert not set(others) & set(map(parts_learned.digest, settings_of(**other))), other
+
+
+@pytest.mark.parametrize(("batch", "rate"), [(32, 0.002), (128, 0.008)])
+def test_the_classifier_learns_at_twice_the_papers_rate_for_as_large_a_batch(settings_of, batch, rate):
+    _, of_gcn, *_ = settings_of(gcn_batch=batch)
+    assert (of_gcn["batch"], of_gcn["rate"]) == (batch, pytest.approx(rate))
 
 
 def test_labels_are_those_of_the_net_and_the_truth_and_ranks_mark_the_true_place(monkeypatch, tmp_path, two_rooms):
@@ -254,9 +267,28 @@ def test_labels_are_those_of_the_net_and_the_truth_and_ranks_mark_the_true_place
     assert marked == grid.place_of(start).tolist()
 
 
+def test_the_view_that_is_shown_has_most_to_see_of_those_that_the_net_gets_right_as_in_the_mean(
+        monkeypatch, tmp_path, two_rooms):
+    """A net that takes all for a wall gets a bare wall right, most of the next view, least where most things are."""
+    shown, home = [], demo.draw.home
+    monkeypatch.setattr(demo.draw, "home", lambda *args: shown.append(args[-1]) or home(*args))
+    g, grid = np.random.default_rng(0), demo.PlaceGrid(two_rooms)
+    net = {name: np.zeros_like(weights) for name, weights in demo.segnet.new_params(g).items()}
+    net["head.b"].reshape(N_CLASSES, -1)[WALL] = 1
+    senses = demo.Senses(two_rooms, net, demo.gcn.GCN(grid.n_places, g, hidden=8))
+    starts = np.array([[2.9, 2.9, 1.3], [4.8, 1.6, -2.3], [4.3, 1.5, 3.1]])
+    _, true = demo.render(two_rooms, starts, np.random.default_rng(0), 64, senses.noise)
+    walls, n_things = (true == WALL).mean((1, 2)), np.diff(demo.scene_graph(true).starts)
+    assert walls[0] > walls[1] > walls.mean() > walls[2]
+    assert n_things[0] < n_things[1] < n_things[2]
+    demo.draw_stages(tmp_path, senses, grid, starts, g)
+    np.testing.assert_array_equal(shown, starts[1:2])
+
+
 @pytest.mark.parametrize(("episodes", "shown"), [
     (["01100", "00011", "00111"], "00011"),  # wrong, wrong, ..., right, right: that one, though others come after it
-    (["00000", "11111", "00001", "01110"], "00001"), (["00010", "11000", "00000"], "00010"), (["10000"], "10000")])
+    (["00000", "11111", "00001", "01110"], "00001"), (["00010", "11000", "00000"], "00010"), (["10000"], "10000"),
+    (["10010", "01000"], "01000")])  # where none ends well, doubt at first is worth more than all between
 def test_the_episode_that_is_shown_begins_in_doubt_and_ends_well_if_any_does(monkeypatch, episodes, shown):
     def collect(_senses, _robot, _grid, _plan, start, seed, _store):
         assert seed == [7, episodes.index(start)]
@@ -373,6 +405,19 @@ def test_a_home_that_the_net_learns_from_is_refused(views, tmp_path, capsys):
     assert_one_line(capsys, ["--plan", plan, "--views", views, "--out", tmp_path / "out"],
                     f"{plan}: expected a home that the net does not learn from (HOUSE from 2 on), found home-1")
     assert not (tmp_path / "out").exists()
+
+
+def test_the_first_home_that_the_net_does_not_learn_from_is_taken(views, tmp_path, monkeypatch):
+    class Begun(Exception):
+        """All has been looked through, and the net begins to learn."""
+
+    def begin(*_):
+        raise Begun
+
+    monkeypatch.setattr(parts_learned, "segmentation_net", begin)
+    args = SimpleNamespace(plan="plan.json", views=views, out=tmp_path, seed=0)
+    with pytest.raises(Begun):  # the views are of homes 0 and 1
+        demo.learn(args, demo.Scale(), None, make_home(2), None, None)
 
 
 @pytest.mark.parametrize("make", [a_song, missing, folder, other_arrays, small_views, unlike_views,

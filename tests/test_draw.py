@@ -6,7 +6,7 @@ from conftest import FLAT, room, thing
 from PIL import Image
 
 from gnl import canvas, draw, floor_map
-from gnl.classes import BED, CLASSES, N_CLASSES, PALETTE, SOFA, WALL
+from gnl.classes import BED, CLASSES, N_CLASSES, PALETTE, SOFA, TABLE, TV, WALL
 from gnl.places import PlaceGrid
 from gnl.scene_graph import scene_graph
 from gnl.strip import cast
@@ -220,6 +220,28 @@ def test_a_wall_stands_in_the_strip_at_its_distance(world):
     assert 100 < count(behind, canvas.FAINT) * 7 / 3 + 10 > count(behind, canvas.PAPER)
 
 
+def classes_ahead(world, height_px):
+    """The middle column of the strip of a robot at (1, 2) that looks to the right: classes, the nearest first."""
+    dense = [part[0] for part in cast(world, np.array([[1.0, 2.0, 0.0]])).dense()]
+    column = np.array(draw.strip(world, dense, 400, height_px))[24:24 + height_px, 30 + 200][::-1]
+    return [next(iter(classes_in(pixel)), None) for pixel in column]
+
+
+def test_in_a_strip_a_short_thing_is_seen_within_a_long_one_at_its_distance():
+    """A television on a table, 1.5 to 3.5 m ahead of the robot."""
+    on = World(room(thing("table", 3.5, 2, 2.0, 1.0, 0.7), thing("tv", 3.5, 2, 0.2, 0.6, 0.5, z0=0.7)))
+    column = classes_ahead(on, 300)  # 50 px a metre: the wall is 4.95 m away
+    assert [column[int(50 * metres)] for metres in (1.4, 1.6, 2.3, 2.5, 2.7, 3.4, 3.6)] == [
+        None, TABLE, TABLE, TV, TABLE, TABLE, None]
+
+
+@pytest.mark.parametrize("x", [3.0, 3.01, 3.02, 3.03])
+def test_in_a_strip_a_thing_as_thin_as_paper_is_two_pixels_or_three(x):
+    column = classes_ahead(World(room(thing("tv", x, 2, 0.001, 1.0, 1.5))), 150)
+    assert 2 <= column.count(TV) <= 3
+    assert abs(column.index(TV) - 25 * (x - 1)) <= 1
+
+
 def test_a_graph_of_no_node_is_a_pale_picture():
     none = scene_graph(np.indices((64, 64)).sum(0) % 2)  # a chess board: no two pixels hang together
     picture = draw.graph(none, Image.new("RGB", (128, 128), (55, 155, 255)))
@@ -330,6 +352,14 @@ def test_what_carries_is_drawn_below_what_it_carries_and_what_hangs_has_an_outli
     plan = floor_map.Map(two_rooms, 640)
     assert colour_at(plan.picture(), plan.at([1.2, 3.1])) == tuple(PALETTE[CLASSES.index("tv")])
     assert colour_at(plan.picture(), plan.at([4.0, 1.45])) != tuple(PALETTE[WALL])
+
+
+@pytest.mark.parametrize("first", ["the higher", "the lower"])
+def test_from_above_one_sees_the_highest_whatever_the_plan_names_first(first):
+    things = [thing("tv", 3, 2, 0.4, 0.4, 0.5, z0=0.7), thing("table", 3, 2, 1.2, 1.2, 0.7)]
+    plan = floor_map.Map(World(room(*(things if first == "the higher" else things[::-1]))), 640)
+    assert colour_at(plan.picture(), plan.at([3.0, 2.0])) == tuple(PALETTE[TV])
+    assert colour_at(plan.picture(), plan.at([3.4, 2.0])) == tuple(PALETTE[TABLE])
 
 
 def test_the_cell_and_the_petal_of_a_place_are_marked(world, grid):

@@ -117,6 +117,13 @@ def test_what_was_learned_by_heart_is_asked_from_starts_of_training_with_luck_of
     assert result["from training starts"] == again
 
 
+def test_what_was_learned_by_heart_is_asked_from_the_first_start_to_the_last_evenly_spread(parts, lived):
+    training, (known, _) = parts[1]["training"], lived[2]["run_all"][3 + N_CHECKPOINTS]
+    which = (known[:, None] == training).all(2).argmax(1)
+    assert (which[0], which[-1]) == (0, N_TRAINING - 1)
+    assert np.ptp(np.diff(which)) <= 1
+
+
 def test_scan_is_the_winner_of_the_race_and_ours_plus_goes_on_with_one_action(lived):
     ((sequences, _),), (_, scan, ours_plus, *_) = (lived[3][name] for name in ("race", "run_all"))
     assert lived[0]["sequence"] == sequences[0].tolist()

@@ -57,6 +57,17 @@ def test_neighbours_are_drawn_towards_pairs_of_the_same_context_and_action():
     np.testing.assert_allclose(store.q_values(second)[:, 0], (3 * two + 12 * (one + two + three) / 3) / 15)
 
 
+def test_a_pair_is_of_the_context_in_which_it_was_met_last():
+    """By hand: a pair alone is drawn to itself in its context, and to nothing in others; pull 12 beside k = 4."""
+    ranks, store, value = reciprocal_ranks(np.eye(4)[:1]), Shrunk(4, 1, pull=12), 0.0
+    in_contexts = np.append(np.tile(ranks, (3, 1)), np.arange(3)[:, None], 1).astype(np.float32)
+    for last in (0, 2, 1, 1, 2, 0):
+        state = in_contexts[[last]]
+        store.learn(state, np.array([0]), np.array([10.0]), state, np.array([True]))
+        value += 0.1 * (10 - value)
+        np.testing.assert_allclose(store.q_values(in_contexts)[:, 0], np.where(np.arange(3) == last, value, value / 4))
+
+
 def test_brute_force_finds_the_oldest_that_is_the_same_and_nothing_that_is_only_near():
     brute = BruteForce(3)
     brute.add(np.float32([[0, 0, 1], [1, 0, 0], [1, 0, 0]]))

@@ -179,6 +179,22 @@ def test_the_checkpoints_that_were_chosen_and_that_were_best_are_counted(written
     assert float(re.search(r"DA - Ours ([+-][\d.]+)", part)[1]) == near(gain)
 
 
+@pytest.mark.parametrize("chosen", [[0, 4, 5, 9, 5, 6], [5, 5, 6, 7, 8, 9]], ids=str)
+def test_what_adaptation_gained_where_it_chose_one_of_the_first_five_is_told_if_it_did(folder, chosen):
+    def gain(result, checkpoint):
+        n_right = [outcome["place"][-1].count("1") for outcome in result["checkpoints"]]
+        return 100 * (n_right[checkpoint] - n_right[-1]) / N
+
+    results, _, _ = report.load(folder)
+    for result, best in zip(results, chosen, strict=True):
+        result["validation"] = [{"place": [str(int(i == best)) * N]} for i in range(10)]
+    early = [gain(result, best) for result, best in zip(results, chosen, strict=True) if best in (0, 1, 2, 3, 4)]
+    said = re.findall(r"where one of the first five was chosen \((\d) of the cells\) ([+-][\d.]+)",
+                      report.adaptation(results))
+    assert [int(n) for n, _ in said] == [len(early)] * bool(early)
+    assert [float(points) for _, points in said] == ([near(np.mean(early))] if early else [])
+
+
 def test_the_difference_by_gap_is_that_of_its_cells(folder, cells):
     results, _, _ = report.load(folder)
     of_world = report.by_gap(results, "Scan", "MV")
@@ -238,6 +254,15 @@ def test_costs_of_a_short_run_are_told_in_minutes():
     short = {"seconds": 12.0, "views": 1000, "of stages": {"graph": 3}, "of training": {"seconds": 9.0, "views": 800},
              "machine": "core 0", "peak MB": 123.0, "versions": {"numpy": "2.0"}}
     assert report.cost([short]).startswith("1000 views in 0.20 minutes, summed over cells that ran side by side, 0.15 ")
+
+
+def test_the_dearest_stage_stands_first_and_the_sum_last():
+    of_stages = {"plan": 1.0, "labels": 2.0, "view": 9.0, "graph": 5.0, "filter": 3.0}
+    part = report.cost([{"seconds": 20.0, "views": 1000, "of stages": of_stages, "of training": {"seconds": 9.0},
+                         "machine": "core 0", "peak MB": 123.0, "versions": {}}])
+    rows = [line.split(" | ")[:2] for line in part.splitlines() if line.startswith("| ")][2:]
+    assert rows == [["| view", "9.00"], ["| labels and graph", "7.00"], ["| filter", "3.00"], ["| plan", "1.00"],
+                    ["| all", "20.00"]]
 
 
 def test_machines_and_versions_are_those_of_all_cells():

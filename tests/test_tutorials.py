@@ -55,7 +55,8 @@ def page(tmp_path, text):
 
 
 def test_a_page_whose_outputs_are_as_written_runs(tmp_path):
-    runner.run(page(tmp_path, "# A\n\n```python\na = 2\nprint(a, 'is', 0.123)\n```\n\n```text\n2 is ...\n```\n\n"
+    runner.run(page(tmp_path, "# A\n\n```text\nno output\n```\n\n"
+                              "```python\na = 2\nprint(a, 'is', 0.123)\n```\n\n```text\n2 is ...\n```\n\n"
                               "```python\nassert a == 2\n```\n\n```sh\nnot run\n```\n"), tmp_path)
 
 

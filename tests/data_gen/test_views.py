@@ -64,6 +64,37 @@ def test_where_one_kind_of_things_is_enough_a_bare_wall_will_do(tokens):
     assert (labels.max((1, 2)) == [0, 6, 6, 0, 0, 6, 6, 0, 6]).all()
 
 
+def test_there_are_as_many_views_as_were_asked_for_where_not_enough_of_the_first_ones_will_do(tokens, monkeypatch):
+    """One of three will do: of nine from each home the first eighteen have six, and the next eighteen the rest."""
+    render = views.render
+
+    def more_bare_walls(*args):
+        rgb, labels = render(*args)
+        labels[1::3] = 0
+        return rgb, labels
+
+    monkeypatch.setattr(views, "render", more_bare_walls)
+    rgb, labels = training_views(2, 18, seed=0)
+    assert np.bincount(rgb[:, 0, 0, 0]).tolist() == [9, 9]
+    assert (labels.max((1, 2)) == 6).all()
+    assert len(labels) == len(rgb)
+
+
+def test_a_kind_is_seen_that_fills_one_percent_of_a_view_and_not_one_that_fills_less(tokens, monkeypatch):
+    """One percent of 64 x 64 pixels is 41, rounded up."""
+    render = views.render
+
+    def with_a_small_thing(*args):
+        rgb, labels = render(*args)
+        labels[:, 1:] = 0
+        labels[::2, 1, :40] = labels[1::2, 1, :41] = 6
+        return rgb, labels
+
+    monkeypatch.setattr(views, "render", with_a_small_thing)
+    _, labels = training_views(1, 6, seed=0)
+    assert (labels == 6).sum((1, 2)).tolist() == [41] * 6
+
+
 @pytest.mark.parametrize(("n_homes", "n_views"), [(4, 10), (3, 9), (5, 3), (1, 1)])
 def test_views_come_evenly_from_all_homes(tokens, n_homes, n_views):
     rgb, _ = training_views(n_homes, n_views, seed=0)
