@@ -24,7 +24,7 @@ VIEWS := out/data/views-$(NOISE).npz
 HOME_PLAN := $(or $(PLAN),out/data/home-$(HOUSE)-$(ALIASING).json)
 
 PYTEST := $(RUN) -m pytest -n auto --dist loadfile --no-loadscope-reorder
-LONG := tests/test_demo.py tests/test_table.py tests/test_tutorials.py
+LONG := tests/test_demo.py tests/test_table.py tests/test_tutorials.py tests/test_why.py
 
 .PHONY: help demo test test-long lint table tutorials figures bench clean
 .DEFAULT_GOAL := help

@@ -1,8 +1,5 @@
 """The full run: all cells are there, and what pages say of it is what the cells say."""
 
-import ast
-import importlib
-import inspect
 import json
 import re
 from pathlib import Path
@@ -23,27 +20,6 @@ def row(text, first):
     """The other cells of the first table row whose first one is this."""
     table = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
     return next(cells[1:] for cells in table if cells[0] == first)
-
-
-def test_the_programs_of_the_page_ask_for_what_there_is():
-    """They run for half an hour each; here it is looked up that all names which they take from gnl are still there."""
-    programs = re.findall(r"```py\n(.*?)```", (RESULTS / "README.md").read_text(), re.DOTALL)
-    assert len(programs) == 4
-    there = {}
-    for tree in map(ast.parse, programs):
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module.startswith("gnl"):
-                module = importlib.import_module(node.module)
-                for alias in node.names:
-                    there[alias.name] = (getattr(module, alias.name) if hasattr(module, alias.name) else
-                                         importlib.import_module(f"{node.module}.{alias.name}"))
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in there:
-                assert hasattr(there[node.value.id], node.attr), f"{node.value.id}.{node.attr}"
-            if isinstance(node, ast.Call) and ast.unparse(node.func) in there:
-                called, spread = there[ast.unparse(node.func)], any(isinstance(arg, ast.Starred) for arg in node.args)
-                bind = inspect.signature(called).bind_partial if spread else inspect.signature(called).bind
-                bind(*node.args, **{k.arg: k.value for k in node.keywords})
 
 
 def test_of_the_effects_of_open_points_as_many_miss_zero_as_is_said():
