@@ -96,7 +96,10 @@ def processes(n):
         signal.signal(signal.SIGINT, here)
     try:
         yield pool
-    except BaseException:
+    except BaseException as error:
+        if not isinstance(error, BrokenExecutor):
+            # Older Pythons wait for ever to send the rest of a large job to processes that are no more (gh-94777).
+            pool._call_queue._reader.close()
         for process in multiprocessing.active_children():
             process.terminate()
         raise

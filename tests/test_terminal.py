@@ -185,17 +185,20 @@ RUN = """if True:
     def run():
         with processes(2) as pool:
             [pool.submit(int).result() for _ in range(9)]  # they are up
-            works = [pool.submit(time.sleep, 20) for _ in range(BUSY)]
+            works = WORKS
             print(*(process.pid for process in multiprocessing.active_children()), flush=True)
-            time.sleep(20)
+            for _ in range(400):  # a signal just before a sleep is handled after it
+                time.sleep(0.05)
 
     guarded("test", run)"""
 
 
-@pytest.mark.parametrize("busy", [0, 1, 5])
+@pytest.mark.parametrize("works", [
+    "[]", "[pool.submit(time.sleep, 20)]", "[pool.submit(time.sleep, 20) for _ in range(5)]",
+    "pool.map(time.sleep, [20] * 500_000, chunksize=100_000)"], ids=["none", "one", "more", "too large for a pipe"])
 @pytest.mark.parametrize("sign, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
-def test_who_stops_this_process_stops_the_others_too_without_many_words(sign, status, busy):
-    with subprocess.Popen([sys.executable, "-c", RUN.replace("BUSY", str(busy))], stdout=subprocess.PIPE,
+def test_who_stops_this_process_stops_the_others_too_without_many_words(sign, status, works):
+    with subprocess.Popen([sys.executable, "-c", RUN.replace("WORKS", works)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
         others = [int(pid) for pid in process.stdout.readline().split()]
         try:
