@@ -1,7 +1,7 @@
 """Cells of the full run, once more: what they began with, for the programs beside this one.
 
 Homes, starts, net and classifiers are those of `make table`, in its folder out/table; what is not there yet is made,
-as the table would.
+as the table would, and kept. What was measured is lost if a program is stopped.
 """
 
 import os
@@ -15,7 +15,7 @@ from gnl.paper import WORLDS
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
 from gnl.table import Settings
-from gnl.terminal import processes
+from gnl.terminal import Stage, processes
 
 SIX = [Cell(world, t_xy_m, t_theta_deg, 0) for world in WORLDS for t_xy_m, t_theta_deg in ((0.2, 10), (1.0, 90))]
 
@@ -31,8 +31,13 @@ def in_cells(measure, cells=SIX, settings=None, out="out/table", retaught=None):
         if retaught:
             senses = dict(zip(senses, pool.map(retaught, senses.values(), repeat(settings)), strict=True))
         starts = [load_starts(out, cell, settings) for cell in cells]
-        return list(pool.map(partial(_in_cell, measure), range(len(cells)), [senses[cell.world] for cell in cells],
-                             starts))
+        found, stage = [], Stage("cells")
+        for of_cell in pool.map(partial(_in_cell, measure), range(len(cells)), [senses[cell.world] for cell in cells],
+                                starts):
+            found.append(of_cell)
+            stage(len(found) / len(cells))
+    stage.done(f"{len(cells)} measured")
+    return found
 
 
 def _in_cell(measure, i, senses, starts):

@@ -1,4 +1,4 @@
-"""What are edges worth to the classifier of places? It learns with them and without them, from the full run's views.
+"""What are edges worth to the classifier of places? It learns with them and without them, from 10,000 views.
 
     python tutorials/results/why/edges.py
 

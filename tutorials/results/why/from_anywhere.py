@@ -14,7 +14,7 @@ from cells_again import SIX, in_cells, undone
 from gnl import episode, planners
 from gnl.compare import paired_difference
 from gnl.ranks import reciprocal_ranks
-from gnl.robot import N_ACTIONS
+from gnl.robot import LEFT, N_ACTIONS, RIGHT
 from gnl.terminal import guarded
 
 TIMES = 10
@@ -24,7 +24,7 @@ def measure(_i, task, starts):
     """The line of a cell."""
     (senses, *_), rng = task, np.random.default_rng(5)
     ours, again = (episode.train_nnql(*task, starts["training"], seed) for seed in (21, 22))
-    line, n = "", min(TIMES * len(starts["tests"]), len(starts["training"]))
+    n, line = min(TIMES * len(starts["tests"]), len(starts["training"])), ""  # n episodes from each of the three
     known, anywhere = rng.choice(starts["training"], n, False), senses.world.free_poses(n, rng)
     for poses, times in (known, 1), (anywhere, 1), (starts["tests"], TIMES):
         records = [episode.run_all(*task, plan, poses.repeat(times, 0), 7)
@@ -33,8 +33,8 @@ def measure(_i, task, starts):
         mean, low, high = (100 * value for value in paired_difference(right, chance))
         line += f"  {mean:+5.1f} [{low:+5.1f}, {high:+5.1f}]"
     actions, by_chance = (record.actions for record in records)  # of the tests
-    left, right, _ = np.bincount(actions.ravel(), minlength=N_ACTIONS) / actions.size
-    line += f"  undone {undone(actions):.0%} {2 * left * right:.0%} {undone(by_chance):.0%}"
+    share = np.bincount(actions.ravel(), minlength=N_ACTIONS) / actions.size
+    line += f"  undone {undone(actions):.0%} {2 * share[LEFT] * share[RIGHT]:.0%} {undone(by_chance):.0%}"
     states = reciprocal_ranks(senses.scores(anywhere, rng))
     one, two = (planners.best_actions(store.q_values(states), rng) for store in (ours, again))
     by_lot = np.bincount(one, minlength=N_ACTIONS) @ np.bincount(two, minlength=N_ACTIONS) / n ** 2

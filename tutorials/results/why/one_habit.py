@@ -21,7 +21,7 @@ from gnl.compare import in_points, paired_difference
 from gnl.episode import LENGTH
 from gnl.nnql import NNQL
 from gnl.ranks import reciprocal_ranks
-from gnl.robot import FORWARD, LEFT, N_ACTIONS
+from gnl.robot import FORWARD, LEFT, N_ACTIONS, RIGHT
 from gnl.terminal import guarded
 
 
@@ -42,7 +42,7 @@ def again(plan):
     def repeat(step, states, rng):
         nonlocal last
         action = plan(step, states, rng)
-        last = action if step == 0 else np.where(action + last == 1, last, action)
+        last = action if step == 0 else np.where(action + last == 1, last, action)  # left is 0, right is 1
         return last
     return repeat
 
@@ -63,7 +63,7 @@ def measure(i, task, starts):
     for name, plan in plans.items():
         record = episode.run_all(*task, plan, anywhere, 7 + i)
         found[name] = record.correct[:, -1], (record.actions == FORWARD).mean()
-    compared = [(q[:, :2].mean(1) - q[:, 2], q[:, 0] - q[:, 1])
+    compared = [(q[:, [LEFT, RIGHT]].mean(1) - q[:, FORWARD], q[:, LEFT] - q[:, RIGHT])
                 for q in (store.q_values(states) for store in (*stores, wide))]
     return found, [(one.mean(), one.std(), np.corrcoef(one, two)[0, 1], more.mean(), more.std())
                    for one, two, more in zip(*compared, strict=True)]

@@ -2,7 +2,7 @@
 
     python tutorials/results/why/ours_plus.py
 
-Prints by how much each plan is ahead of Scan and of Ours+, and how often it undoes a turn.
+Prints by how much each plan is ahead of Scan and of Ours+, and how often an action undoes the one before.
 
     Ours, drawn    NNQL whose means are drawn to those of step and last action (open_points.md)
     anew           Ours+ that decides anew after every look
@@ -39,7 +39,8 @@ class By(options.Experience):
         """Remember a look, and its other reward."""
         before = len(self.rewards)
         super().watch(step, **look)
-        self.rewards[before:] = [self.reward(look)] * (len(self.rewards) - before)
+        if len(self.rewards) > before:
+            self.rewards[-1] = self.reward(look)
 
 
 class InPairs:
