@@ -35,7 +35,7 @@ help:
 	@echo "             HOUSE=800 another home, from 40 on    ALIASING=0.3 how alike its rooms are, 0..1"
 	@echo "             ARGS='--episodes 10000 ...' any option of  $(RUN) -m gnl demo --help"
 	@echo "make test    run the tests, but for the long ones"
-	@echo "make test-long   run those: demo and tables from end to end, killed and begun again; all chapters"
+	@echo "make test-long   run those: demo and tables from end to end, killed and begun again; all chapters, all programs of the results"
 	@echo "make lint    check the style of the code"
 	@echo "make table   the paper's experiment at full scale, then its report (out/table; half an hour or more)"
 	@echo "             ARGS='--quick' a small slice in a minute (out/table-quick); TABLE=folder; more with  $(RUN) -m gnl table --help"
