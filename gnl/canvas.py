@@ -37,11 +37,11 @@ class Canvas:
     def disc(self, middle, radius, fill, outline=None, width=1.0):
         self.pen.circle(_enlarged([middle])[0], SMOOTH * radius, fill, outline, round(SMOOTH * width))
 
-    def arrow(self, middle, theta, length, colour=INK):
-        """A dart that flies to the bearing theta, counter-clockwise from the right."""
+    def arrow(self, middle, theta, length, colour=INK, rim=None):
+        """A dart that flies to the bearing theta, counter-clockwise from the right; a rim tells it from others."""
         forward, aside = np.array([[1, -1, -0.6, -1], [0, 0.65, 0, -0.65]])[..., None] * length / 2
         ahead = np.array([np.cos(theta), -np.sin(theta)])
-        self.polygon(middle + forward * ahead + aside * ahead[::-1] * [1, -1], colour)
+        self.polygon(middle + forward * ahead + aside * ahead[::-1] * [1, -1], colour, rim, 0.5)
 
     def dial(self, middle, theta, radius, colour):
         """A disc, and on it the bearing theta."""

@@ -64,7 +64,7 @@ class Map(Canvas):
     def starts(self, poses, colour=ROBOT):
         """Many poses, each a little arrow."""
         for middle, pose in zip(self._mark(np.asarray(poses)[:, :2]), poses, strict=True):
-            self.arrow(middle, pose[2], 15, colour)
+            self.arrow(middle, pose[2], 16, colour, PAPER)
 
     def path(self, poses, colour=ROBOT):
         """The way along some poses, a dot at each."""

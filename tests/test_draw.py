@@ -329,6 +329,15 @@ def test_robots_starts_and_particles_look_to_their_bearing(world, monkeypatch, t
         np.testing.assert_allclose(way / np.hypot(*way), ahead, atol=1e-6)
 
 
+def test_of_two_starts_in_one_spot_the_upper_has_a_rim_on_the_lower(world):
+    plan = floor_map.Map(world, 640)
+    plan.starts([[3.0, 2.0, 0.3]], canvas.BELIEF)
+    lower = (np.array(plan.picture()) == canvas.BELIEF).all(-1)
+    plan.starts([[3.0, 2.0, 2.0]], canvas.BELIEF)
+    both = (np.array(plan.picture()) == canvas.BELIEF).all(-1)
+    assert (both & ~lower).any() and (lower & ~both).any()
+
+
 def test_cells_far_out_are_named_by_two_letters():
     assert [floor_map.column_name(i) for i in (0, 25, 26, 27, 52)] == ["A", "Z", "AA", "AB", "BA"]
 
