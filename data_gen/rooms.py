@@ -10,9 +10,12 @@ net was trained. layout.py draws the rooms, furnish.py fills each; here they bec
 
 import math
 import numbers
+import re
+from pathlib import Path
 
 import numpy as np
 
+from gnl.files import check_folder
 from gnl.floor_plan import DOOR_HEIGHT_M, WALL_HEIGHT_M
 from gnl.world import LEAF_THICKNESS_M, World
 
@@ -28,13 +31,17 @@ TRIES = 10000  # of nine rooms, one layout in forty is good
 def add_arguments(parser):
     """Options of `python -m data_gen home`."""
     parser.add_argument("out", help="floor plan to write (.json)")
-    parser.add_argument("--seed", type=int, default=800)
+    parser.add_argument("--seed", type=int, default=800, help="which home: one seed, one home (800)")
     parser.add_argument("--aliasing", type=float, default=0.3, help="0..1, how alike rooms are (0.3)")
 
 
 def run(args):
-    """One procedural home as a floor plan."""
-    make_home(args.seed, args.aliasing).save(args.out)
+    """One procedural home as a floor plan; in the place of another one, but of no other file."""
+    home, path = make_home(args.seed, args.aliasing), Path(args.out)
+    check_folder("out", path.parent if args.out else "")
+    if path.exists() and not re.fullmatch(r"home-\d+", World.load(path).name):
+        raise ValueError(f"{path}: expected a procedural home or nothing, found {World.load(path).name}")
+    home.save(path)
 
 
 def make_home(seed, aliasing=0.3):

@@ -30,10 +30,10 @@ def add_arguments(parser):
     parser.add_argument("folder", help="where to write them: a floor plan a home, start poses a cell")
     parser.add_argument("--cell", nargs=4, action="append", required=True, metavar=("WORLD", "M", "DEG", "SEED"),
                         help="seed of the home, T_xy, T_theta, seed; may be repeated")
-    parser.add_argument("--training", type=int, default=10_000)
-    parser.add_argument("--tests", type=int, default=100)
-    parser.add_argument("--validation", type=int, default=10)
-    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--training", type=int, default=10_000, help="starts beyond the gap, a cell (10000)")
+    parser.add_argument("--tests", type=int, default=100, help="starts from anywhere, a cell (100)")
+    parser.add_argument("--validation", type=int, default=10, help="more of these, to choose a checkpoint by (10)")
+    parser.add_argument("--jobs", type=int, default=1, help="processes (1)")
     parser.add_argument("--picture", action="store_true", help="draw both kinds of starts on the map, too")
 
 
@@ -65,7 +65,7 @@ def run(args):
             if args.picture:
                 save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
             stage((i + 1) / len(todo))
-    stage.done(f"{len(todo)} gaps between where one learns and where one is tested")
+    stage.done(f"{len(todo)} gap{'s' * (len(todo) > 1)} between where one learns and where one is tested")
 
 
 def cell_of(words):
@@ -78,6 +78,8 @@ def cell_of(words):
     except ValueError:
         raise ValueError("--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, M of at most six digits, "
                          f"found {' '.join(words)}") from None
+    if cell.t_theta_deg >= 180:
+        raise ValueError(f"--cell: expected DEG below 180, found {cell.t_theta_deg}")
     return cell
 
 

@@ -29,9 +29,9 @@ MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # that deci
 def add_arguments(parser):
     """Options of `python -m data_gen views`."""
     parser.add_argument("out", help="file of arrays to write (.npz)")
-    parser.add_argument("--homes", type=int, default=40)
-    parser.add_argument("--views", type=int, default=2400)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--homes", type=int, default=40, help="homes with the seeds 0, 1, ... (40)")
+    parser.add_argument("--views", type=int, default=2400, help="views of all homes together (2400)")
+    parser.add_argument("--seed", type=int, default=0, help="of poses and noise (0)")
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
     parser.add_argument("--kinds", type=int, default=LEAST_KINDS, help=f"kinds in each view, or more ({LEAST_KINDS})")
 

@@ -38,7 +38,8 @@ def add_arguments(parser):
     """Options of `python -m gnl ablate`."""
     parser.add_argument("--out", default="out/ablate", help="folder of results (out/ablate)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
-    parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md (all that can be measured)")
+    parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md; our choices and "
+                        "true labels are run with them (all that can be measured)")
     parser.add_argument("--page", help="a page like tutorials/open_points.md, to fill the effects into its tables")
 
 

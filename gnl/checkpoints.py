@@ -36,7 +36,7 @@ class Checkpoints:
         if not 0 <= checkpoint < len(self):
             there = f"0..{len(self) - 1}" if self.entries else "one to be there"
             raise ValueError(f"checkpoint: expected {there}, found {checkpoint}")
-        values = [np.empty(n) for n, _, _ in self.entries[checkpoint]]
+        values = [np.full(n, np.nan) for n, _, _ in self.entries[checkpoint]]
         for entry in self.entries[:checkpoint + 1]:
             for of_action, (_, changed, to) in zip(values, entry, strict=True):
                 of_action[changed] = to
@@ -55,14 +55,18 @@ class Checkpoints:
 
     @classmethod
     def from_arrays(cls, arrays, n_actions):
-        """The checkpoints of `to_arrays`."""
+        """The checkpoints of `to_arrays`; ValueError if they do not hold a value of every pair."""
         self, by_action = cls(n_actions), []
         for a in range(n_actions):
-            cuts = np.cumsum(arrays[f"n_changed{a}"])[:-1]
-            changed, to = (np.split(arrays[f"{name}{a}"], cuts) for name in ("changed", "changed_to"))
+            born, n_changed, changed, to = (arrays[f"{name}{a}"] for name in cls.NAMES)
+            if not n_changed.sum() == len(changed) == len(to):
+                raise ValueError(f"{n_changed.sum()} changes counted, {len(changed)} and {len(to)} there")
+            changed, to = (np.split(log, np.cumsum(n_changed)[:-1]) for log in (changed, to))
             # Of no checkpoints at all np.split makes one empty piece.
-            by_action.append(list(zip(arrays[f"born{a}"].tolist(), changed, to, strict=False)))
+            by_action.append(list(zip(born.tolist(), changed, to, strict=False)))
         self.entries = list(map(list, zip(*by_action, strict=True)))
-        if self.entries:
-            self._latest = self.values_at(len(self) - 1)
+        for checkpoint in range(len(self)):
+            self._latest = self.values_at(checkpoint)
+            if not all(np.isfinite(values).all() for values in self._latest):
+                raise ValueError(f"checkpoint {checkpoint} lacks values")
         return self

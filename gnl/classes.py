@@ -5,7 +5,8 @@ A label image holds the index of a class in CLASSES: 0 wall, 1 floor, ... 9 othe
 
 import numpy as np
 
-# To add one: its name below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py; then learn anew.
+# To add one: its name and its constant below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py;
+# then learn anew.
 CLASSES = ("wall", "floor", "ceiling", "bed", "door", "table", "sofa", "refrigerator", "tv", "other")
 WALL, FLOOR, CEILING, BED, DOOR, TABLE, SOFA, REFRIGERATOR, TV, OTHER = range(len(CLASSES))
 N_CLASSES = len(CLASSES)
@@ -30,7 +31,10 @@ ADE20K = {1: WALL, 4: FLOOR, 6: CEILING, 8: BED, 15: DOOR, 16: TABLE, 24: SOFA, 
 
 
 def from_ade20k(labels):
-    """Labels of the ten classes from ADE20K's indices 0..150, of any shape."""
+    """Labels of the ten classes from ADE20K's indices 0..150, of any shape; ValueError for others."""
+    labels = np.asarray(labels)
+    if labels.size and not 0 <= labels.min() <= labels.max() <= 150:
+        raise ValueError(f"labels: expected ADE20K's indices 0..150, found {labels.min()}..{labels.max()}")
     table = np.full(151, OTHER, np.uint8)
     table[list(ADE20K)] = list(ADE20K.values())
     return table[labels]

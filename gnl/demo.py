@@ -43,10 +43,11 @@ def add_arguments(parser):
     parser.add_argument("--views", required=True, help="training views of other homes, from `python -m data_gen views`")
     parser.add_argument("--out", default="out", help="folder for what is learned and drawn (out)")
     parser.add_argument("--pictures", help="folder for the pictures (OUT/demo)")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=0, help="of what is learned and tested (0)")
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise of the views (1)")
     for name, default in vars(Scale()).items():
-        parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=default, help=f"({default})")
+        parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=default, metavar="N",
+                            help=f"{name.replace('_', ' ')} ({default})")
 
 
 def run(args):
@@ -146,8 +147,8 @@ def check(args):
         if getattr(args, name) < least:
             raise ValueError(f"--{name.replace('_', '-')}: expected at least {least}, found {getattr(args, name)}")
     check_noise(args.noise, "--noise")
-    for name in ("out", "pictures"):
-        check_folder(f"--{name}", getattr(args, name) or ".")
+    check_folder("--out", args.out)
+    check_folder("--pictures", args.out if args.pictures is None else args.pictures)
 
 
 def rng(args, stream):

@@ -26,6 +26,8 @@ def run(args):
     """Print the graph, a node a line, and draw it over the labels."""
     labels, coloured = load(args.labels, args.ade20k)
     out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
+    if out.suffix.lower() != ".png":
+        raise ValueError(f"--out: expected a name that ends in .png, found {out}")
     if out.exists() and out.samefile(args.labels):
         raise ValueError(f"--out: expected another file than the labels, found {out}")
     graph = scene_graph(labels)

@@ -91,20 +91,20 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
             kept["actions"].append(actions)
         scores = senses.scores(poses, appearance)
-        fit = rules.likelihood(scores)
+        likelihood = rules.likelihood(scores)
         if particles:
-            senses.timed("filter", _update, particles, odometry, fit)
+            senses.timed("filter", _update, particles, odometry, likelihood)
         else:
-            particles = senses.timed("filter", rules.filter, grid, fit, filtering)
+            particles = senses.timed("filter", rules.filter, grid, likelihood, filtering)
         pooled = senses.timed("filter", particles.belief, rules.pooling)
         seen, states = states, senses.timed("ranks", rules.state, scores, particles, step, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
-        in_place = pooled[np.arange(B), places]
-        for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", in_place)):
+        belief = pooled[np.arange(B), places]
+        for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", belief)):
             kept[name].append(value)
         if watch:
             watch(step, poses=poses, scores=scores, filter=particles, pooled=pooled, seen=seen, actions=actions,
-                  states=states, places=places, right=answers == places, belief=in_place)
+                  states=states, places=places, right=answers == places, belief=belief)
     return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
 
 

@@ -122,8 +122,8 @@ def load_cell(path):
     """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
     def look(result):
         curve([result]), right(result)
-        by_heart = from_training(result)
-        by_heart["MV"], by_heart["Scan"], by_heart["Ours"]
+        if lacking := {"MV", "Scan", "Ours"} - from_training(result).keys():
+            raise ValueError(f"no {', '.join(sorted(lacking))} from training starts")
         for tests in [*result["tests"].values(), *result["checkpoints"]], result["from training starts"].values():
             sizes = {np.shape(arrays(outcome[name])) for outcome in tests for name in ("place", "location")}
             if len(sizes) > 1:
@@ -140,8 +140,8 @@ def load_cell(path):
     def look_at_costs(costs):
         numbers = [costs["seconds"], costs["views"], costs["peak MB"], costs["of training"]["seconds"],
                    *costs["of stages"].values()]
-        if min(numbers) < 0 or not costs["views"]:
-            raise ValueError("no views, or less than nothing")
+        if not all(0 <= number < float("inf") for number in numbers) or not costs["views"]:  # NaN compares as false
+            raise ValueError("no views, less than nothing, or no number")
         costs["of stages"]["graph"], costs["machine"].split(), costs["versions"].items()
 
     return (load_json(path, "the outcomes of a cell", look),

@@ -17,8 +17,11 @@ FORMAT = 1
 
 
 def write_whole(path, data):
-    """Write the bytes `data` to `path`: all of them or, on any interruption, nothing."""
+    """Write the bytes `data` to `path`, or to where it links: all of them or, if this is interrupted, nothing."""
     path = Path(path)
+    path = path.resolve() if path.is_symlink() else path
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise ValueError(f"{path}: expected a file or nothing, found a device")
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
@@ -32,19 +35,21 @@ def write_whole(path, data):
         os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; give back the usual rights
         os.replace(temporary, path)
     except BaseException as error:
-        os.unlink(temporary)
+        Path(temporary).unlink(missing_ok=True)  # interrupted after all was done, it has its name already
         if isinstance(error, OSError) and error.errno:  # it names no file, or the temporary one
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
 
 
 def check_folder(option, path):
-    """ValueError if there is a file where a folder will be, or no name for it."""
+    """ValueError if there is a file where a folder will be, no name for it, or no right to write there."""
     if not str(path):
         raise ValueError(f"{option}: expected a folder, found no name")
-    for part in (Path(path), *Path(path).parents):
-        if part.exists() and not part.is_dir():
-            raise ValueError(f"{option}: expected a folder, found the file {part}")
+    there = next(part for part in (Path(path), *Path(path).absolute().parents) if part.exists())
+    if not there.is_dir():
+        raise ValueError(f"{option}: expected a folder, found the file {there}")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ValueError(f"{option}: expected a folder to write in, found {there}, where you may not")
 
 
 def save_arrays(path, made_by, **arrays):

@@ -26,14 +26,14 @@ def poses_beyond(world, tests, t_xy_m, t_theta_rad, n, rng, gap=beyond_gap):
 
     ValueError with the share of poses that would do, if a home has too little of it
     """
-    found, drawn = [], 0
-    while sum(map(len, found)) < n:
-        poses = rng.uniform((*world.bounds[:2], -np.pi), (*world.bounds[2:], np.pi), (DRAWN_AT_ONCE, 3))
-        poses = poses[gap(poses, tests, t_xy_m, t_theta_rad)]
-        found.append(poses[world.is_reachable(poses[:, :2])])
+    poses, drawn = np.empty((0, 3)), 0
+    while len(poses) < n:
+        draw = rng.uniform((*world.bounds[:2], -np.pi), (*world.bounds[2:], np.pi), (DRAWN_AT_ONCE, 3))
+        draw = draw[gap(draw, tests, t_xy_m, t_theta_rad)]
+        poses = np.vstack([poses, draw[world.is_reachable(draw[:, :2])]])
         drawn += DRAWN_AT_ONCE
-        if sum(map(len, found)) < FEWEST * drawn:
+        if len(poses) < FEWEST * drawn:
             raise ValueError(f"{world.name}: expected room for starts {t_xy_m:g} m and {np.degrees(t_theta_rad):.0f} "
-                             f"degrees off the nearest of {len(tests)} test starts, found {sum(map(len, found))} "
-                             f"among {drawn} poses drawn, {sum(map(len, found)) / drawn:.3%}")
-    return np.concatenate(found)[:n]
+                             f"degrees off the nearest of {len(tests)} test starts, found {len(poses)} among {drawn} "
+                             f"poses drawn, {len(poses) / drawn:.3%}")
+    return poses[:n]

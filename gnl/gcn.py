@@ -26,13 +26,17 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
 
         A_hat = D^-1/2 (A + I) D^-1/2,   D = diag(row sums of A + I)
 
-    edges (E, 2), each pair once -> (N, N), symmetric, largest eigenvalue 1; graphs of a batch are its blocks
+    edges (E, 2) int, each pair once -> (N, N), symmetric, largest eigenvalue 1; graphs of a batch are its blocks
     """
+    _check_integers(edges)
     i, j = edges.T
     # CHOICE: sums over neighbours are normalised; the group's code of 2021 sums plainly.
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
-    rows, columns = np.divmod(np.sort(rows * n_nodes + columns, kind="stable"), n_nodes)  # row by row
+    entries = np.sort(rows * n_nodes + columns, kind="stable")  # row by row
+    if (entries[1:] == entries[:-1]).any():
+        raise ValueError("edges: expected pairs of different nodes, each once, found one twice, or of a node alone")
+    rows, columns = np.divmod(entries, n_nodes)
     degree = np.bincount(rows, minlength=n_nodes)
     scale = (1 / np.sqrt(degree)).astype(dtype)
     return sparse(scale[rows] * scale[columns], columns, np.append(0, degree.cumsum()), n_nodes)
@@ -84,9 +88,16 @@ def _check_words(words, n_words):
         raise ValueError(f"words: expected 0..{n_words - 1}, found {words.min()}..{words.max()}")
 
 
+def _check_integers(edges):
+    """ValueError unless edges are an array (E, 2) of integers."""
+    if edges.ndim != 2 or edges.shape[1] != 2 or not np.issubdtype(edges.dtype, np.integer):
+        raise ValueError(f"edges: expected integers of shape (E, 2), found {edges.dtype} {edges.shape}")
+
+
 def _check_edges(graphs):
     """ValueError unless edges are pairs of nodes i < j of one graph, each once."""
-    i, j = graphs.edges.astype(int).reshape(-1, 2).T
+    _check_integers(graphs.edges)
+    i, j = graphs.edges.astype(int).T
     n = len(graphs.words)
     good = (i >= 0) & (i < j) & (j < n)
     good[good] = np.equal(*(np.searchsorted(graphs.starts, ends[good], side="right") for ends in (i, j)))

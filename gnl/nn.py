@@ -155,11 +155,13 @@ class Adam:
 def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):
     """Largest relative difference between dx and central differences of the scalar f, at random entries of x.
 
-        df/dx_i = (f(x + eps e_i) - f(x - eps e_i)) / (2 eps)
+        df/dx_i = (f(x + eps e_i) - f(x - eps e_i)) / (2 eps),   a to b differs by |a - b| / max(1e-6, |a| + |b|)
+
+    NaN if one of them is.
 
     f : function of no argument that reads x, a float64 array which is nudged in place and restored
     """
-    worst = 0.0
+    errors = [0.0]
     for i in rng.choice(x.size, min(probes, x.size), replace=False):
         kept = x.flat[i]
         x.flat[i] = kept + eps
@@ -168,5 +170,5 @@ def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):
         down = f()
         x.flat[i] = kept
         numeric, analytic = (up - down) / (2 * eps), dx.flat[i]
-        worst = max(worst, abs(numeric - analytic) / max(1e-6, abs(numeric) + abs(analytic)))
-    return worst
+        errors.append(abs(numeric - analytic) / max(1e-6, abs(numeric) + abs(analytic)))
+    return np.max(errors)  # of which NaN is the greatest

@@ -92,13 +92,15 @@ class Neighbours:
 class NNQL:
     """The store: an index of states and an array of values for each action; and its past.
 
-    `index` makes an empty nearest-neighbour index for states of n_places numbers (rank_index.py, kdtree.py).
+    `index` makes an empty nearest-neighbour index for states of state_size numbers (rank_index.py, kdtree.py).
     """
 
-    def __init__(self, n_places, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
+    def __init__(self, state_size, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
+        if not (0 <= alpha <= 1 and 0 <= gamma <= 1):  # NaN compares as false
+            raise ValueError(f"alpha, gamma: expected numbers from 0 to 1, found {alpha} and {gamma}")
         self.k, self.alpha, self.gamma = check_count("k", k, 1), alpha, gamma
         # CHOICE: neighbours of a pair are pairs of the same action; the paper's N(s, a) could hold others, too.
-        self.index = [index(n_places) for _ in range(n_actions)]
+        self.index = [index(state_size) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
         self.log = Checkpoints(n_actions)
         self._states, self._found = None, []  # what was looked up last, and of each action its Neighbours
@@ -136,19 +138,17 @@ class NNQL:
                 self._learn(states[rows], a, q, pair, target[rows])
 
     def _learn(self, states, a, q, pair, target):
-        values, born, births = self.values[a], {}, []  # births: values of the pairs that this step adds
+        values, born = self.values[a], {}  # born: values of the pairs that this step adds, by state
         for i, state in enumerate(states):
             if pair[i] >= 0:
                 values[pair[i]] += self.alpha * (target[i] - values[pair[i]])
-                continue
-            new = born.setdefault(state.tobytes(), len(births))  # the second robot to meet it finds it there
-            if new == len(births):
-                births.append(first_value(q[i]))
-            births[new] += self.alpha * (target[i] - births[new])
-        if births:
+            else:
+                value = born.get(state.tobytes(), first_value(q[i]))  # the second robot to meet it finds it there
+                born[state.tobytes()] = value + self.alpha * (target[i] - value)
+        if born:
             newborn = np.stack([np.frombuffer(key, states.dtype) for key in born])
             ids = self.index[a].add(newborn)
-            self.values[a] = np.append(values, births)
+            self.values[a] = np.append(values, list(born.values()))
             if self._states is not None:
                 self._found[a] = self._found[a].joined_by(self._states, newborn, ids)
 

@@ -37,6 +37,8 @@ class ParticleFilter:
         likelihood = np.asarray(likelihood)
         if likelihood.ndim != 2:
             raise ValueError(f"likelihood: expected shape (B, K), found {likelihood.shape}")
+        if not (np.isfinite(std).all() and min(std) >= 0):
+            raise ValueError(f"std: expected finite numbers from 0 on, found {std}")
         if min(n_particles, n_start_places) < 1:
             raise ValueError("n_particles, n_start_places: expected at least 1 of each, "
                              f"found {n_particles} and {n_start_places}")

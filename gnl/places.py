@@ -10,6 +10,7 @@ import numpy as np
 
 CELL_M = 2.0
 N_BEARINGS = 12
+ROUNDING = 1e-10  # m, rad; what is so near to the next cell is in it: 30 degrees in radians are a little less
 
 
 class PlaceGrid:
@@ -29,7 +30,7 @@ class PlaceGrid:
 
     def place_of(self, poses):
         """Place of each pose: (..., 3) -> (...,) int. A pose off the grid gets the nearest cell of the rim."""
-        return self.place_of_xyt(*np.moveaxis(check_poses(poses), -1, 0))
+        return self.place_of_xyt(*np.moveaxis(check_poses(poses) + ROUNDING, -1, 0))
 
     def place_of_xyt(self, x, y, theta):
         """The same from coordinates in arrays of their own."""
@@ -62,5 +63,5 @@ def check_poses(poses):
 
 
 def wrap_angle(theta):
-    """Angle(s) in (-pi, pi]."""
+    """Angle(s) in (-pi, pi], but for rounding."""
     return -((np.pi - np.asarray(theta)) % (2 * np.pi) - np.pi)

@@ -4,12 +4,12 @@ The state of nearest-neighbour Q-learning is a ranking of K places, written as 1
 permutation of (1, 1/2, ..., 1/K). So all have one length, the nearest is the one with the greatest dot
 product, and two are near only if their first places agree, or nearly so. The index keeps vectors on shelves,
 one for each first place, and looks only at those that can hold a neighbour (`most_beyond`). New vectors lie on
-a heap until there are enough to put on the shelves. A robot that faces one more bare wall ranks the places as
+a pile until there are enough to put on the shelves. A robot that faces one more bare wall ranks the places as
 it did at the last one: equal vectors share one row.
 
 symbol     shape     meaning
 points     (n, K)    all stored vectors in order of birth, float32; a point's id is its number
-rows       (m, K)    the different ones: shelf after shelf, each by age, then the heap by age
+rows       (m, K)    the different ones: shelf after shelf, each by age, then the pile by age
 queries    (B, K)    vectors whose neighbours are wanted
 k          int       neighbours wanted
 n_first    int       look at the first n_first points only: the store as it was when it held so many
@@ -22,8 +22,8 @@ import numpy as np
 from .kdtree import as_points, check_count, check_points, lengths
 
 # Any choice gives the same answers.
-SMALL = 2000  # rows; up to so many stay on the heap, where it is fastest to look at every one
-HEAP = 500  # rows; so many go to the shelves together
+SMALL = 2000  # rows; up to so many stay on the pile, where it is fastest to look at every one
+PILE = 500  # rows; so many go to the shelves together
 DEEP = 8  # shelves; a query that is unsure after so many looks at every row
 
 
@@ -62,8 +62,8 @@ class RankIndex:
                 self._copies.setdefault(oldest, [oldest]).append(new)
                 self._row_of.append(self._row_of[oldest])
             else:
-                self._put_on_heap(vector, new)
-        if len(self._oldest) > SMALL and len(self._oldest) - self._shelves[-1] >= HEAP:
+                self._put_on_pile(vector, new)
+        if len(self._oldest) > SMALL and len(self._oldest) - self._shelves[-1] >= PILE:
             self._tidy_up()
         return ids
 
@@ -95,11 +95,11 @@ class RankIndex:
     def _look_on_shelves(self, queries, k, n_first):
         """Pairs of a query and a row that may be among its k nearest; and the queries that need to see more."""
         start, end = self._shelves[-1], bisect_left(self._oldest, n_first, self._shelves[-1])
-        on_heap = [()] * len(queries)
+        on_pile = [()] * len(queries)
         if start < end:
-            on_heap = products(queries, self._rows[start:end])  # of all together: much faster than one by one
+            on_pile = products(queries, self._rows[start:end])  # of all together: much faster than one by one
         who, rows, unsure = [], [], []
-        for i, (query, dots) in enumerate(zip(queries, on_heap, strict=True)):
+        for i, (query, dots) in enumerate(zip(queries, on_pile, strict=True)):
             near = self._look(k, self._pieces(query, dots, n_first))
             if near is None:
                 unsure.append(i)
@@ -108,10 +108,10 @@ class RankIndex:
                 rows += near
         return who, rows, unsure
 
-    def _pieces(self, query, on_heap, n_first):
+    def _pieces(self, query, on_pile, n_first):
         """Where a query (K,) looks: first row of a piece, its dot products, the most that any row beyond can have."""
-        if len(on_heap):
-            yield self._shelves[-1], on_heap, self._most_beyond[0]
+        if len(on_pile):
+            yield self._shelves[-1], on_pile, self._most_beyond[0]
         for depth in range(1, min(DEEP, len(query)) + 1):
             place = (query == 1 / depth).argmax()
             start = self._shelves[place]
@@ -159,7 +159,7 @@ class RankIndex:
                 return oldest
         return -1
 
-    def _put_on_heap(self, vector, new):
+    def _put_on_pile(self, vector, new):
         m = len(self._oldest)
         if m == len(self._rows):
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
@@ -169,7 +169,7 @@ class RankIndex:
         self._known.setdefault(hash(vector.tobytes()), []).append(new)
 
     def _tidy_up(self):
-        """From the heap to the shelves."""
+        """From the pile to the shelves."""
         m = len(self._oldest)
         first = self._rows[:m].argmax(axis=1)
         order = first.argsort(kind="stable")  # the older stay before the younger

@@ -68,10 +68,11 @@ def collect(senses, robot, grid, plan, start_pose, seed, nnql=None, rules=None):
         seen = witness.latest
         particles = tuple(a[0].copy() for a in (filter.x, filter.y, filter.theta, filter.weight))
         looks.append(Look(
-            poses[0].copy(), int(grid.place_of(poses)[0]), int(pooled[0].argmax()), pooled[0], particles, states[0],
-            seen["large"][0], seen.get("labels", seen["view"][1])[0], seen["graph"],
-            nnql.q_values(states)[0] if nnql else None,
-            *((int(seen["plan"][0]), bool(seen["robot"][2][0])) if step else ())))
+            pose=poses[0].copy(), place=int(grid.place_of(poses)[0]), answer=int(pooled[0].argmax()), pooled=pooled[0],
+            particles=particles, states=states[0], view=seen["large"][0],
+            labels=seen.get("labels", seen["view"][1])[0], graph=seen["graph"],
+            q=nnql.q_values(states)[0] if nnql else None, action=int(seen["plan"][0]) if step else None,
+            bumped=bool(step and seen["robot"][2][0])))
 
     run(witness, robot, grid, plan, start_pose[None], seed, rules, watch)
     return looks

@@ -8,10 +8,11 @@ import numpy as np
 from . import draw, draw_charts
 from .compare import episodes_needed, in_points, mcnemar, over_cells
 from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, load_cell
-from .files import load_json, write_whole
+from .files import check_folder, load_json, write_whole
+from .groundwork import check_settings
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
-from .table import check_settings, path_of
+from .table import path_of
 from .terminal import Stage
 
 SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
@@ -30,6 +31,7 @@ def add_arguments(parser):
 
 def run(args):
     """Write report.md and its pictures."""
+    check_folder("--to", args.out if args.to is None else args.to)
     stage, folder = Stage("report"), Path(args.to or Path(args.out) / "report")
     results, costs, settings = load(args.out)
     text = "\n\n".join(sections(results, costs, settings)) + "\n"
@@ -197,15 +199,15 @@ def adaptation(results):
     """How often each checkpoint was chosen, what that gained, and what a perfect choice would have."""
     chosen = np.array([adapted(result) for result in results])
     best = [best_checkpoint(result["checkpoints"]) for result in results]
-    rows = [["chosen", *np.bincount(chosen, minlength=len(results[0]["checkpoints"]))],
-            ["best on the tests", *np.bincount(best, minlength=len(results[0]["checkpoints"]))]]
+    rows = [["chosen", *np.bincount(chosen, minlength=N_CHECKPOINTS)],
+            ["best on the tests", *np.bincount(best, minlength=N_CHECKPOINTS)]]
     gain = gains(results, "DA", "Ours")
     early = [g for g, c in zip(gain, chosen, strict=True) if c < N_CHECKPOINTS // 2]
     text = f"DA - Ours {interval(gain)}"
     if early:
         text += f"; where one of the first five was chosen ({len(early)} of the cells) {interval(early)}"
     text += ". The best of ten equal ones looks better than they are: much of what Oracle gains is luck, if not all"
-    return text + ".\n\n" + markdown(["checkpoint", *range(1, len(results[0]["checkpoints"]) + 1)], rows)
+    return text + ".\n\n" + markdown(["checkpoint", *range(1, N_CHECKPOINTS + 1)], rows)
 
 
 def cost(costs):

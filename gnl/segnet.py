@@ -190,7 +190,7 @@ def predict(params, rgb, chunk=8):
 def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     """Fit `params` in place to views and their labels; half of the batches are seen mirrored.
 
-    The rate rises over the first 20th of the steps and falls along a cosine.
+    The rate rises over the first 20th of the steps and falls along a cosine to 0: the last step changes nothing.
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
     if not len(rgb) or labels.shape != rgb.shape[:3] or labels.min() < 0 or labels.max() >= N_CLASSES:
@@ -216,7 +216,7 @@ def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
 
 def accuracy(predicted, true):
     """Pixel accuracy, and mean intersection over union of the classes that occur in `true`."""
-    both = np.bincount(true.ravel() * N_CLASSES + predicted.ravel(), minlength=N_CLASSES ** 2)
+    both = np.bincount(true.ravel().astype(int) * N_CLASSES + predicted.ravel(), minlength=N_CLASSES ** 2)
     both = both.reshape(N_CLASSES, N_CLASSES).astype(float)
     hit, present = both.diagonal(), both.sum(1) > 0
     iou = hit[present] / (both.sum(0) + both.sum(1) - hit)[present]

@@ -35,10 +35,10 @@ class Senses:
     def look_around(self, poses, rng, progress=None, at_once=128):
         """The same for any number of poses, some at once; progress(share done)."""
         parts = []
-        for i in range(0, len(poses), at_once):
+        for i in range(0, max(1, len(poses)), at_once):  # one look even of no poses
             parts.append(self.look(poses[i:i + at_once], rng))
             if progress:
-                progress(min(1, (i + at_once) / len(poses)))
+                progress(min(1, (i + at_once) / max(1, len(poses))))
         return join(parts)
 
     def scores(self, poses, rng, wanted=None):

@@ -120,10 +120,10 @@ def _boxes_in_view(world, poses):
     """
     x, y, theta = (np.asarray(poses, float)[:, i, None] for i in range(3))
     dx, dy = world.centre[:, 0] - x, world.centre[:, 1] - y
-    cos, sin, half = np.cos(theta), np.sin(theta), FIELD_OF_VIEW_RAD / 2
-    ahead, left = cos * dx + sin * dy, cos * dy - sin * dx
+    ahead, left = np.cos(theta) * dx + np.sin(theta) * dy, np.cos(theta) * dy - np.sin(theta) * dx
     # A circle around the box reaches into the view.
-    pair = np.flatnonzero(abs(left) * np.cos(half) - ahead * np.sin(half) < np.hypot(*world.half.T))
+    edge = FIELD_OF_VIEW_RAD / 2
+    pair = np.flatnonzero(abs(left) * np.cos(edge) - ahead * np.sin(edge) < np.hypot(*world.half.T))
     view, box = np.divmod(pair, len(world.label))
     ahead, left, turn = ahead.take(pair), left.take(pair), world.angle.take(box) - theta.take(view)
     cos, sin = np.cos(turn), np.sin(turn)

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from concurrent.futures import FIRST_COMPLETED, wait
+import threading
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -65,7 +65,7 @@ def run(args):
     if todo:
         with executor(args.jobs, args.dask) as pool:
             run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
-    print(f"{len(cells)} cells in {out / 'cells'}; `report --out {out}` tells what they say")
+    print(f"{len(cells)} cell{'s' * (len(cells) > 1)} in {out / 'cells'}; `report --out {out}` tells what they say")
 
 
 def jobs_of(out, settings, cells, todo, jobs, pool):
@@ -93,32 +93,37 @@ def check_parts(path, senses):
 def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
     """Hand jobs (name, function, *arguments) to the processes, and write each's outcomes and costs as they come.
 
-    jobs : may be made one by one; those that are there are worked on while the next one is made
+    jobs : may be made one by one; those that are there are worked on, and written, while the next one is made
     """
-    waiting = {}
+    waiting, faults, news = {}, [], threading.Event()
 
-    def keep(timeout):
-        ready, _ = wait(waiting, timeout, FIRST_COMPLETED)
-        for future in sorted(ready, key=lambda future: future.exception() is not None):  # what is finished is kept
-            name, (result, costs) = waiting.pop(future), future.result()
-            path = path_of(out, name)
+    def keep(future):
+        """Called by a thread of the pool when a job is done, whatever this one waits for."""
+        try:
+            path, (result, costs) = path_of(out, waiting[future]), future.result()
             write_whole(costs_of(path), to_bytes(costs))
             write_whole(path, to_bytes(result))
+            del waiting[future]
+        except BaseException as error:  # a thread has nobody to tell
+            faults.append(error)
+        news.set()
 
-    try:
-        for name, *job in jobs:
-            waiting[pool.submit(*job)] = name
-    except BaseException:
-        keep(0)
-        raise
-    n_jobs, stage = len(waiting), Stage(name_of_stage)
-    stage.note(f"0 of {n_jobs} cells")
-    while waiting:
-        keep(1)
-        done = n_jobs - len(waiting)
+    n_jobs = 0
+    for name, *job in jobs:
+        waiting[future := pool.submit(*job)] = name
+        future.add_done_callback(keep)
+        n_jobs += 1
+    stage, n_left = Stage(name_of_stage), len(waiting)
+    stage.note(f"{n_jobs - n_left} of {n_jobs} cells")
+    while waiting and not faults:
+        done = n_left - len(waiting)  # since this stage began
         rate = done * n_episodes / stage.seconds
-        stage(done / n_jobs, f"{done} of {n_jobs} cells, {rate:.0f} episodes/s")
-    stage.done(f"{n_jobs} cells of {n_episodes} episodes each")
+        stage(done / n_left, f"{n_jobs - len(waiting)} of {n_jobs} cells, {rate:.0f} episodes/s")
+        news.wait(1)
+        news.clear()
+    if faults:
+        raise faults[0]
+    stage.done(f"{n_jobs} cell{'s' * (n_jobs != 1)} of {n_episodes} episodes each")
 
 
 def check(args):
@@ -150,11 +155,11 @@ def world_of(name):
 
 def gap_of(name):
     """T_xy [m] and T_theta [degrees] of "0.2/10"."""
-    if name not in GAPS:
+    known = {f"{m:g}/{deg}": (m, deg) for m in GAPS_M for deg in GAPS_DEG}
+    if name not in (*known, *GAPS):
         raise ValueError(f"--gaps: expected T_xy/T_theta of {', '.join(map(str, GAPS_M))} m and "
                          f"{', '.join(map(str, GAPS_DEG))} degrees, as in {GAPS[0]}, found {name!r}")
-    t_xy_m, t_theta_deg = name.split("/")
-    return float(t_xy_m), int(t_theta_deg)
+    return known[name.replace(".0/", "/")]
 
 
 def agree(out, settings):

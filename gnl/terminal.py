@@ -48,11 +48,17 @@ def command_line(program, description, commands, argv=None):
     guarded(program, run)
 
 
+def _clear(stream):
+    """What wipes the last line of a stream; nothing where there is no terminal, or a dumb one."""
+    return CLEAR if stream.isatty() and os.environ.get("TERM") != "dumb" else ""
+
+
 class Stage:
     """A line on the terminal that lives while a stage runs; where there is no terminal, only its end is printed."""
 
     def __init__(self, name, stream=None):
         self.name, self.stream = name, stream or sys.stdout
+        self.clear = _clear(self.stream)
         self.start, self.shown = time.perf_counter(), 0.0
         self.note("...")
 
@@ -69,14 +75,13 @@ class Stage:
 
     def note(self, text):
         """Replace the line's text."""
-        if self.stream.isatty():
-            self.stream.write(f"{CLEAR}{self.name:<8} {text}")
+        if self.clear:
+            self.stream.write(f"{self.clear}{self.name:<8} {text}")
             self.stream.flush()
 
     def done(self, text):
         """Fix the line: the result and the time."""
-        start = CLEAR if self.stream.isatty() else ""
-        self.stream.write(f"{start}{self.name:<8} {text:<76} {self.seconds:5.1f} s\n")
+        self.stream.write(f"{self.clear}{self.name:<8} {text:<76} {self.seconds:5.1f} s\n")
         self.stream.flush()
 
 
@@ -157,12 +162,15 @@ def guarded(program, run, *args):
         sys.exit(128 + signal.SIGPIPE)
     except (ValueError, OSError, MemoryError) as error:
         status, line = 2, str(error).replace("\n", " ")
+    except ModuleNotFoundError as error:
+        if error.name.partition(".")[0] in (__package__, "data_gen"):
+            raise
+        status, line = 2, f"expected {error.name} to be installed, as `make` does in .venv, found none"
     except BrokenExecutor:
         status, line = 1, "a process beside this one was ended from outside; what was finished is kept"
     except KeyboardInterrupt:
         status, line = 128 + signal.SIGINT, "interrupted; what was finished is kept"
     if status:
-        if sys.stdout.isatty():
-            print(end=CLEAR, flush=True)
+        print(end=_clear(sys.stdout), flush=True)
         print(f"{program}: {line}", file=sys.stderr)
     sys.exit(status)

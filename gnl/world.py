@@ -61,10 +61,9 @@ class World:
         gaps = np.array([d["segment"] for d in doors], float).reshape(-1, 2, 2).mean(1)
         for thing in plan.get("objects", []):
             # CHOICE: a door among the objects that fills a gap is that door's leaf, told twice: the door decides.
-            middle = np.mean(thing["polygon"], 0)
-            if class_of(thing["class"]) == DOOR and (np.hypot(*(gaps - middle).T) < 0.2).any():
+            label, z0, middle = class_of(thing["class"]), thing.get("z0", 0.0), np.mean(thing["polygon"], 0)
+            if label == DOOR and (np.hypot(*(gaps - middle).T) < 0.2).any():
                 continue
-            label, z0 = class_of(thing["class"]), thing.get("z0", 0.0)
             colour = _colour(label, thing.get("color"), rng)
             boxes += [(*box, z0, z0 + thing["height"], label, *colour) for box in cover_polygon(thing["polygon"])]
 
@@ -138,8 +137,10 @@ class World:
         leads_out = not self.free_space.inside(middle + 0.4 * np.array([left, -left])).all()
         # CHOICE: a door of which the plan says nothing is open, but a front door is shut.
         is_open = (door.get("state") or ("closed" if leads_out else "open")) == "open"
-        # A segment along a wall is no gap: a folding door that stands open there.
-        folded = box_distance(middle[None], walls[:, 0:2], walls[:, 2:4], walls[:, 4]).min() < 0.1
+        # A segment along a wall is no gap: a folding door that stands open there. (One spot alone: a wall ends in it.)
+        spots = hinge + np.array([[0.25], [0.5], [0.75]]) * (end - hinge)
+        walled = box_distance(spots, walls[:, 0:2], walls[:, 2:4], walls[:, 4]).min(1) < 0.1
+        folded = walled[1] and walled.sum() > 1
         if is_open and not folded:
             end = hinge + left * np.hypot(*(end - hinge))
         boxes = [_panel((*hinge, *end), LEAF_THICKNESS_M, 0.0, height, DOOR, _colour(DOOR, door.get("color"), rng))]

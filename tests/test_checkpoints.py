@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from test_nnql import INDEXES, A, K, lived, random_states, transitions
 
+from gnl.files import load_arrays, save_arrays
 from gnl.nnql import NNQL
 
 
@@ -91,6 +92,30 @@ def test_checkpoints_cost_little_beside_the_states():
     changes = sum(len(changed) for entry in store.log.entries for _, changed, _ in entry)
     assert log == 12 * changes
     assert log < 0.05 * states  # measured: 0.014
+
+
+@pytest.mark.parametrize("lacking", [("changed0", "changed_to0"), ("changed_to1",), ("changed1",)], ids=str)
+def test_a_file_whose_checkpoints_lack_values_is_refused(tmp_path, lacking):
+    store = lived(5)
+    store.checkpoint()
+    store.checkpoint()
+    store.save(tmp_path / "nnql.npz", "a test")
+    arrays, made_by = load_arrays(tmp_path / "nnql.npz")
+    save_arrays(tmp_path / "nnql.npz", made_by, **arrays | {name: arrays[name][:-2] for name in lacking})
+    with pytest.raises(ValueError, match="expected a store of state-action pairs, found another one"):
+        NNQL.load(tmp_path / "nnql.npz")
+
+
+def test_a_file_whose_checkpoints_were_shortened_together_is_refused(tmp_path):
+    store = lived(5)
+    store.checkpoint()
+    store.save(tmp_path / "nnql.npz", "a test")
+    arrays, made_by = load_arrays(tmp_path / "nnql.npz")
+    shorter = {"changed0": arrays["changed0"][:-2], "changed_to0": arrays["changed_to0"][:-2],
+               "n_changed0": arrays["n_changed0"] - 2}
+    save_arrays(tmp_path / "nnql.npz", made_by, **arrays | shorter)
+    with pytest.raises(ValueError, match="found another one .checkpoint 0 lacks values"):
+        NNQL.load(tmp_path / "nnql.npz")
 
 
 def test_a_checkpoint_without_news_logs_nothing():

@@ -55,6 +55,12 @@ def test_an_image_of_ade20k_keeps_its_shape():
     assert np.array_equal(from_ade20k(image), [[[OTHER, BED], [DOOR, TV], [5, OTHER]]])
 
 
+@pytest.mark.parametrize("label", [-1, 151, 255])
+def test_an_index_that_ade20k_does_not_have_is_refused(label):
+    with pytest.raises(ValueError, match=rf"labels: expected ADE20K's indices 0\.\.150, found .*{label}"):
+        from_ade20k(np.array([[1, label]]))
+
+
 def lab(colours, eye):
     """CIELAB of sRGB colours (n, 3) in 0..255 as an eye sees them."""
     c = colours / 255

@@ -297,6 +297,23 @@ def test_a_picture_that_cannot_be_written_leaves_nothing(tmp_path, capsys):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["taken", "view.png"]
 
 
+@pytest.mark.parametrize("name", ["LICENSE", "graph.jpg", "graph"])
+def test_a_picture_has_the_name_of_a_picture(tmp_path, capsys, name):
+    path = write(tmp_path / "view.png")
+    (tmp_path / "LICENSE").write_text("MIT")
+    assert run("graph", path, "--out", tmp_path / name) == 2
+    assert_one_line(capsys, f"--out: expected a name that ends in .png, found {tmp_path / name}\n")
+    assert (tmp_path / "LICENSE").read_text() == "MIT"
+
+
+def test_a_python_without_what_gnl_needs_is_told_in_one_line(tmp_path):
+    (tmp_path / "numpy.py").write_text("raise ModuleNotFoundError('No module', name='numpy')")
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from gnl.__main__ import main; main(['graph', 'a.png'])"
+    finished = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert finished.returncode == 2
+    assert finished.stderr == ("python -m gnl: expected numpy to be installed, as `make` does in .venv, found none\n")
+
+
 def test_a_program_that_fails_shows_no_traceback(tmp_path):
     finished = subprocess.run([sys.executable, "-W", "error", "-m", "gnl", "graph", tmp_path / "view.png"],
                               capture_output=True, text=True)

@@ -391,6 +391,12 @@ def test_a_file_in_the_place_of_a_folder_is_named_before_anything_is_learned(tmp
                     f"{option}: expected a folder, found the file {tmp_path / 'file'}")
 
 
+@pytest.mark.parametrize("option", ["--out", "--pictures"])
+def test_a_folder_without_a_name_is_none(tmp_path, capsys, option):
+    assert_one_line(capsys, ["--plan", FLAT, "--views", tmp_path / "v", option, ""],
+                    f"{option}: expected a folder, found no name")
+
+
 @pytest.mark.parametrize("make", [a_song, missing, folder], ids=lambda make: make.__name__)
 def test_a_plan_that_is_none_is_named(tmp_path, capsys, make):
     make(tmp_path / "plan")

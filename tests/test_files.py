@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import full_disk
 
-from gnl.files import FORMAT, load_arrays, save_arrays, write_whole
+from gnl.files import FORMAT, check_folder, load_arrays, save_arrays, write_whole
 
 
 def header(**content):
@@ -43,6 +43,42 @@ def test_an_interrupted_write_leaves_all_as_it_was(tmp_path, monkeypatch, stop, 
         patch.setattr(os, "fdopen", HalfWay)
         write_whole(tmp_path / "file", b"new and longer")
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"] * existed
+
+
+def test_who_is_interrupted_when_all_is_done_has_the_file_and_hears_of_the_interruption(tmp_path, monkeypatch):
+    def replace(old, new, replace=os.replace):
+        replace(old, new)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "replace", replace)
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(tmp_path / "file", b"new")
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("file", b"new")]
+
+
+def test_a_link_stays_a_link_and_what_it_links_to_is_written(tmp_path):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "there" / "file")
+    for data in b"first", b"second":
+        write_whole(tmp_path / "link", data)
+        assert (tmp_path / "link").is_symlink()
+        assert [path.read_bytes() for path in (tmp_path / "there").iterdir()] == [data]
+
+
+def test_a_device_is_left_alone(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ValueError, match="pipe: expected a file or nothing, found a device"):
+        write_whole(tmp_path / "pipe", b"new")
+    assert (tmp_path / "pipe").is_fifo()
+
+
+@pytest.mark.parametrize("where", ["", "new", "new/newer"])
+def test_a_folder_where_one_may_not_write_is_named_before_any_work(tmp_path, monkeypatch, where):
+    monkeypatch.setattr(os, "access", lambda path, _: str(path) != str(tmp_path))  # root may write anywhere
+    with pytest.raises(ValueError, match=f"--out: expected a folder to write in, found {tmp_path}, where you may not"):
+        check_folder("--out", tmp_path / where)
+    monkeypatch.undo()
+    check_folder("--out", tmp_path / where)
 
 
 def test_a_full_disk_is_told_with_the_name_of_the_file(tmp_path, monkeypatch):

@@ -64,6 +64,10 @@ def test_who_learns_starts_only_where_one_can_get_to(two_rooms_plan):
     assert (home.is_free(others) & ~home.is_reachable(others)).any()
 
 
+def test_no_poses_beyond_a_gap_are_drawn_where_none_are_wanted(two_rooms_plan):
+    assert poses_beyond(World(two_rooms_plan), np.zeros((1, 3)), 0.2, 0.1, 0, np.random.default_rng(0)).shape == (0, 3)
+
+
 def test_no_pose_is_turned_by_more_than_half_a_circle():
     home = World(room())
     with pytest.raises(ValueError, match="found 0 among"):

@@ -218,6 +218,22 @@ def test_training_without_one_known_place_for_each_graph_is_refused(places):
         gcn.train(net(), graphs_of(random_parts(0)), places, np.random.default_rng(0))
 
 
+@pytest.mark.parametrize(("edges", "words"), [
+    ([(0, 1), (0, 1)], "each once, found one twice"), ([(0, 1), (1, 0)], "each once, found one twice"),
+    ([(2, 2)], "or of a node alone"), (np.empty((0, 2)), r"edges: expected integers of shape \(E, 2\), found float64"),
+    ([0, 1], r"edges: expected integers of shape \(E, 2\), found int64 \(2,\)")])
+def test_scores_of_edges_that_are_no_pairs_are_refused(edges, words):
+    graphs = SceneGraphs(np.zeros(3, int), np.zeros((3, 4)), np.asarray(edges), np.array([0, 3]), np.array([0, 2]))
+    with pytest.raises(ValueError, match=words):
+        net().scores(graphs)
+
+
+def test_training_on_edges_that_are_no_whole_numbers_is_refused():
+    graphs = SceneGraphs(np.zeros(3, int), np.zeros((3, 4)), np.array([[0.2, 1.7]]), np.array([0, 3]), np.array([0, 1]))
+    with pytest.raises(ValueError, match="edges: expected integers"):
+        gcn.train(net(), graphs, [0], np.random.default_rng(0))
+
+
 def test_words_that_the_network_does_not_know_are_refused():
     few = gcn.GCN(K, np.random.default_rng(0), n_words=3)
     for words in ([0, 3], [-1, 2]):

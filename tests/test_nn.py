@@ -175,3 +175,9 @@ def test_the_gradient_check_sees_a_wrong_gradient_and_leaves_its_argument_as_it_
     assert nn.gradient_error(lambda: (x ** 3).sum(), x, 3 * x ** 2, rng) < CLOSE
     assert nn.gradient_error(lambda: (x ** 3).sum(), x, 3.01 * x ** 2, rng) > 1e-3
     np.testing.assert_array_equal(x, kept)
+
+
+def test_the_gradient_check_sees_what_is_no_number():
+    x, rng = normal(0, 7), np.random.default_rng(0)
+    assert not nn.gradient_error(lambda: (x ** 2).sum(), x, np.full(7, np.nan), rng) < CLOSE
+    assert not nn.gradient_error(lambda: np.nan, x, 2 * x, rng) < CLOSE

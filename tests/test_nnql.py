@@ -239,3 +239,9 @@ def test_a_store_that_does_not_fit_together_is_refused_by_name(tmp_path, change)
 def test_no_neighbours_are_refused():
     with pytest.raises(ValueError, match="k: expected a whole number from 1 to inf, found 0"):
         NNQL(K, A, k=0)
+
+
+@pytest.mark.parametrize("how", [{"alpha": np.nan}, {"alpha": -3}, {"gamma": 7}, {"gamma": np.nan}], ids=str)
+def test_rates_that_cannot_be_are_refused(how):
+    with pytest.raises(ValueError, match="alpha, gamma: expected numbers from 0 to 1, found "):
+        NNQL(K, A, **how)

@@ -268,6 +268,12 @@ def life(likelihood, seed, resample):
     return state(belief)
 
 
+@pytest.mark.parametrize("std", [(np.nan, 0.03), (0.03, np.inf), (-0.1, 0)], ids=str)
+def test_motion_noise_that_cannot_be_is_refused(std):
+    with pytest.raises(ValueError, match="std: expected finite numbers from 0 on, found "):
+        new_filter(std=std)
+
+
 def test_one_seed_gives_one_filter():
     one, again, other = (life(random_likelihood(0, 2), seed, True) for seed in (0, 0, 1))
     for name, value in one.items():

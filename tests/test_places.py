@@ -65,6 +65,13 @@ def test_coordinates_apart_give_the_same_places():
     np.testing.assert_array_equal(grid.place_of(poses), grid.place_of_xyt(*np.moveaxis(poses, -1, 0)))
 
 
+@pytest.mark.parametrize(("cell_m", "n_bearings"), [(2.0, 12), (0.7, 7), (0.3, 36)])
+def test_what_lies_on_a_border_lies_beyond_it(cell_m, n_bearings):
+    grid = PlaceGrid(SimpleNamespace(bounds=(-1.3, 2.1, 10.7, 9.1)), cell_m, n_bearings)
+    places = np.arange(grid.n_places)
+    np.testing.assert_array_equal(grid.place_of(grid.corner_of(places)), places)
+
+
 def test_a_location_forgets_the_bearing():
     grid = grid_over(8, 6)
     poses = np.random.default_rng(3).uniform([-1.3, 2.1, -np.pi], [6.7, 8.1, np.pi], (200, 3))

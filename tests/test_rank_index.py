@@ -35,8 +35,8 @@ def index_of(points):
 
 @pytest.fixture(params=[(0, 0), (0, 40), (100, 40), (2000, 0)], ids="{0[0]}+{0[1]}".format)
 def small(request, monkeypatch):
-    """Rows on the heap before any goes to the shelves, and then: none, some, some later, all of them."""
-    for name, value in zip(("SMALL", "HEAP"), request.param, strict=True):
+    """Rows on the pile before any goes to the shelves, and then: none, some, some later, all of them."""
+    for name, value in zip(("SMALL", "PILE"), request.param, strict=True):
         monkeypatch.setattr(rank_index, name, value)
 
 
@@ -172,19 +172,19 @@ def test_most_shelves_stay_closed(monkeypatch):
         all_rows.extend(queries) or look_at_all(queries, *rest)))
     index.query(points[::20], 4)
     assert len(looks) == 50
-    assert np.median(looks) <= 3  # the heap and one or two of 60 shelves
+    assert np.median(looks) <= 3  # the pile and one or two of 60 shelves
     assert len(all_rows) < 10
 
 
 def test_rows_move_to_the_shelves_some_at_a_time(monkeypatch):
     monkeypatch.setattr(rank_index, "SMALL", 100)
-    monkeypatch.setattr(rank_index, "HEAP", 30)
-    index, on_heap = RankIndex(50), []
+    monkeypatch.setattr(rank_index, "PILE", 30)
+    index, on_pile = RankIndex(50), []
     for point in random(np.random.default_rng(10), 200, 50):
         index.add(point[None])
-        on_heap.append(len(index) - index._shelves[-1])
-    assert on_heap[:101] == [*range(1, 101), 0]
-    assert on_heap[101:] == [*range(1, 30), 0] * 3 + list(range(1, 10))
+        on_pile.append(len(index) - index._shelves[-1])
+    assert on_pile[:101] == [*range(1, 101), 0]
+    assert on_pile[101:] == [*range(1, 30), 0] * 3 + list(range(1, 10))
 
 
 def test_an_empty_index_answers_with_nothing(small):

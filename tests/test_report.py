@@ -340,6 +340,25 @@ def test_damaged_settings_and_costs_are_named(folder, tmp_path, capsys, name, da
     assert err.count("\n") == 1
 
 
+@pytest.mark.parametrize("seconds", [-1.0, float("nan"), float("inf")])
+def test_costs_that_cannot_be_are_named(folder, tmp_path, capsys, seconds):
+    shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
+    path = tmp_path / "one" / "costs" / "800-1m-90deg-seed0.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"seconds": seconds}))
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(tmp_path / "one")])
+    assert exit.value.code == 2
+    assert f"{path}: expected the costs of a cell, found " in capsys.readouterr().err
+
+
+def test_a_file_in_the_place_of_the_report_is_named(folder, tmp_path, capsys):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(SystemExit) as exit:
+        main(["report", "--out", str(folder), "--to", str(tmp_path / "file")])
+    assert exit.value.code == 2
+    assert capsys.readouterr().err == f"python -m gnl: --to: expected a folder, found the file {tmp_path / 'file'}\n"
+
+
 @pytest.mark.parametrize("missing", ["cell", "validation", "tests", "checkpoints", "from training starts"])
 def test_a_cell_that_lacks_a_part_is_named(folder, tmp_path, capsys, missing):
     shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))

@@ -151,6 +151,12 @@ def test_accuracy_of_a_case_worked_by_hand():
     assert segnet.accuracy(9 - true, true) == (0, 0)
 
 
+def test_accuracy_counts_beyond_sixteen_classes(monkeypatch):
+    monkeypatch.setattr(segnet, "N_CLASSES", 20)
+    labels = np.arange(20, dtype=np.uint8).reshape(1, 4, 5)
+    assert segnet.accuracy(labels, labels) == (1, 1)
+
+
 @pytest.mark.parametrize("size", [(36, 64), (64, 8)])
 def test_views_that_the_pyramid_cannot_part_are_refused(size):
     params, (H, W) = segnet.new_params(np.random.default_rng(0)), size

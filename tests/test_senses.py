@@ -81,6 +81,13 @@ def test_a_look_around_is_the_looks_one_after_the_other(task):
     assert told == [0.4, 0.8, 1]
 
 
+def test_to_look_around_from_nowhere_gives_no_graph(task):
+    senses, _, _ = task
+    shares = []
+    assert len(senses.look_around(np.empty((0, 3)), np.random.default_rng(0), shares.append)) == 0
+    assert shares == [1]
+
+
 def test_who_shares_senses_sees_what_he_would_see_alone_and_only_what_is_new_is_looked_at():
     lucky = Lucky()
     shared, elsewhere = SharedSenses(lucky), POSES + [[0, 0, 0], [0, 0, 0], [0, 0, 1], [0, 0, 0]]

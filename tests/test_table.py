@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import Future
 from types import SimpleNamespace
@@ -311,6 +312,39 @@ def test_what_is_finished_is_kept_though_the_next_job_cannot_be_made(tmp_path):
     assert {path.name for path in tmp_path.glob("*/*")} == {"good.json"}
 
 
+def test_what_is_finished_is_written_while_the_next_job_is_made(tmp_path):
+    def jobs():
+        yield "good", lambda: ({"name": "good"}, {})
+        written.extend(path.name for path in tmp_path.glob("*/*"))
+        yield "other", lambda: ({"name": "other"}, {})
+
+    written = []
+    table.run_jobs(tmp_path, jobs(), 10, AtOnce(), "table")
+    assert written == ["good.json", "good.json"]  # outcomes and costs
+
+
+def test_the_speed_that_is_shown_is_of_the_cells_done_since_the_stage_began(tmp_path, monkeypatch):
+    class AtOnceOrSoon(AtOnce):
+        def submit(self, function):
+            if function():
+                return super().submit(function)
+            future = Future()
+            threading.Timer(0.2, future.set_result, [({}, {})]).start()
+            return future
+
+    class Shown(list):
+        seconds, note, done = 2.0, list.append, list.append
+
+        def __call__(self, *words):
+            self.append(words)
+
+    monkeypatch.setattr(table, "Stage", lambda _: shown)
+    shown = Shown()
+    table.run_jobs(tmp_path, [("now", lambda: ({}, {})), ("soon", lambda: None)], 10, AtOnceOrSoon(), "table")
+    assert list(dict.fromkeys(shown)) == ["1 of 2 cells", (0, "1 of 2 cells, 0 episodes/s"),
+                                          "2 cells of 10 episodes each"]
+
+
 def test_a_folder_that_holds_nothing_yet_takes_other_settings(tmp_path):
     table.agree(tmp_path, {"tests": 7})
     (tmp_path / "settings.json").write_text('{"tests": 12}')
@@ -321,6 +355,11 @@ def test_a_folder_that_holds_nothing_yet_takes_other_settings(tmp_path):
         with pytest.raises(ValueError, match="expected results of tests 7, found some of 12"):
             table.agree(tmp_path, {"tests": 7})
         (tmp_path / there).unlink()
+
+
+@pytest.mark.parametrize(("name", "gap"), [("1.0/90", (1.0, 90)), ("1/90", (1.0, 90)), ("0.2/10", (0.2, 10))])
+def test_a_gap_is_known_by_its_name_and_as_files_name_it(name, gap):
+    assert table.gap_of(name) == gap
 
 
 def test_the_quick_table_is_two_cells_of_one_home():

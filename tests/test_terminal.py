@@ -19,6 +19,11 @@ from gnl.terminal import Stage, guarded, processes
 ERASE = "\r\x1b[K"  # to the start of the line, clear it
 
 
+@pytest.fixture(autouse=True)
+def no_dumb_terminal(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+
+
 class Terminal(io.StringIO):
     def isatty(self):
         return True
@@ -45,6 +50,16 @@ def test_where_there_is_no_terminal_only_the_end_of_a_stage_is_printed(clock):
     clock.now += 4.0
     stage.done("91% right")
     assert stream.getvalue() == "net      " + "91% right".ljust(76) + "  16.0 s\n"
+
+
+def test_on_a_dumb_terminal_only_the_end_of_a_stage_is_printed(clock, monkeypatch):
+    monkeypatch.setenv("TERM", "dumb")
+    stream = Terminal()
+    stage = Stage("net", stream)
+    clock.now += 12.0
+    stage(0.5, "loss 0.31")
+    stage.done("91% right")
+    assert stream.getvalue() == "net      " + "91% right".ljust(76) + "  12.0 s\n"
 
 
 def test_on_a_terminal_a_stage_shows_how_far_it_is_and_leaves_one_line(clock):
@@ -115,6 +130,26 @@ def test_who_stops_listening_ends_the_run_with_the_status_of_a_broken_pipe():
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 128 + signal.SIGPIPE
+
+
+@pytest.mark.parametrize("name", ["numpy", "PIL.Image"])
+def test_a_library_that_is_lacking_is_named_in_one_line(capsys, name):
+    assert leave(stop, ModuleNotFoundError("a long story", name=name)) == 2
+    assert capsys.readouterr().err == (
+        f"python -m gnl: expected {name} to be installed, as `make` does in .venv, found none\n")
+
+
+def test_a_module_of_our_own_that_is_lacking_is_not_hidden():
+    with pytest.raises(ModuleNotFoundError):
+        guarded("python -m gnl", stop, ModuleNotFoundError("gnl.word", name="gnl.word"))
+
+
+def test_what_was_printed_stands_before_the_last_words():
+    code = "from gnl.terminal import guarded\ndef run(): print('net'); raise ValueError('a.png')\nguarded('p', run)"
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True)
+    assert done.stdout == "net\np: a.png\n"
 
 
 def test_an_interruption_is_one_line_on_stderr_and_status_130(capsys):
@@ -198,8 +233,10 @@ RUN = """if True:
     "pool.map(time.sleep, [20] * 500_000, chunksize=100_000)"], ids=["none", "one", "more", "too large for a pipe"])
 @pytest.mark.parametrize("sign, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
 def test_who_stops_this_process_stops_the_others_too_without_many_words(sign, status, works):
+    # Who starts the tests in the background of a script lets them ignore Ctrl-C.
     with subprocess.Popen([sys.executable, "-c", RUN.replace("WORKS", works)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+                          stderr=subprocess.PIPE, text=True, start_new_session=True,
+                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as process:
         others = [int(pid) for pid in process.stdout.readline().split()]
         try:
             process.send_signal(sign)

@@ -178,6 +178,14 @@ def test_a_folding_door_along_a_wall_stays_there():
     assert len(boxes_of(world, WALL, above=0)) == 0
 
 
+def test_a_wall_that_ends_in_the_middle_of_a_gap_does_not_shut_its_door():
+    plan = inner_door(state="open")
+    plan["walls"].append([3, 1.95, 5, 1.95])
+    world = World(plan)
+    assert len(boxes_of(world, WALL, above=0)) == 1  # the lintel
+    assert (world.centre[world.label == DOOR, 0] < 2.9).all()  # its leaf stands aside
+
+
 def test_of_doors_without_a_state_a_front_door_is_shut_and_an_inner_door_open():
     assert not World(front_door()).is_free([[0, 2]])
     assert World(inner_door()).is_free([[3, 1.95]])

@@ -12,6 +12,7 @@ import pytest
 from scipy import ndimage
 
 import data_gen
+from data_gen.__main__ import main
 from data_gen.furnish import ALONE, AT_WALL
 from data_gen.furniture import ROOMS
 from data_gen.layout import turn
@@ -218,6 +219,34 @@ def test_home_is_the_world_of_its_plan():
     home = make_home(np.int64(3), aliasing=0.5)
     assert home.plan == home_plan(3, 0.5)
     assert home.is_free(home.free_poses(20, np.random.default_rng(0))[:, :2]).all()
+
+
+def written(path):
+    """Exit status of `python -m data_gen home PATH`."""
+    with pytest.raises(SystemExit) as exit:
+        main(["home", str(path), "--seed", "3"])
+    return exit.value.code
+
+
+def test_a_home_takes_the_place_of_another_procedural_one_and_of_no_other_file(tmp_path, capsys):
+    home, mine, notes = (tmp_path / name for name in ("home.json", "mine.json", "notes.md"))
+    make_home(5).save(home)
+    assert written(home) == 0
+    assert World.load(home).plan == home_plan(3)
+    World({**home_plan(5), "name": "my home-5"}).save(mine)
+    notes.write_text("dear diary")
+    for path, found in (mine, "expected a procedural home or nothing, found my home-5"), (notes, "expected JSON"):
+        before = path.read_bytes()
+        assert written(path) == 2
+        assert path.read_bytes() == before
+        err = capsys.readouterr().err
+        assert err.startswith(f"python -m data_gen: {path}: {found}")
+        assert err.count("\n") == 1
+
+
+def test_a_home_without_a_name_of_a_file_is_one_line(capsys):
+    assert written("") == 2
+    assert capsys.readouterr().err == "python -m data_gen: out: expected a folder, found no name\n"
 
 
 def by_room(plan):

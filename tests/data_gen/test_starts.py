@@ -162,6 +162,13 @@ def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_turn_of_half_a_circle_or_more_is_no_gap(tmp_path, capsys):
+    with pytest.raises(SystemExit) as exit:
+        main(["starts", str(tmp_path / "out"), "--cell", "800", "0.2", "180", "0"])
+    assert exit.value.code == 2
+    assert capsys.readouterr().err == "python -m data_gen: --cell: expected DEG below 180, found 180\n"
+
+
 def test_cells_have_starts_in_their_own_homes_as_many_as_were_asked_for_whatever_was_there(tmp_path):
     def drawn(n_training, *worlds):
         words = [word for world in worlds for word in ("--cell", world, "0.2", "10", "0")]
