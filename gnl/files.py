@@ -17,7 +17,7 @@ FORMAT = 1
 
 
 def write_whole(path, data):
-    """Write the bytes `data` to `path`, or to where it links: all of them or, if this is interrupted, nothing."""
+    """Write the bytes `data` to `path`, or to where it links: all of them or nothing, whatever interrupts it."""
     path = Path(path)
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not (path.is_file() or path.is_dir()):

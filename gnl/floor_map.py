@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from .canvas import BELIEF, INK, PAPER, QUIET, ROBOT, TINTS, Canvas, colour_of, text_width
 from .classes import WALL
 from .free_space import box_distance
-from .polygons import cover_polygon
+from .polygons import columns, cover_polygon
 from .strip import cast, slopes
 from .world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M
 
@@ -158,7 +158,7 @@ class Map(Canvas):
         w, named, marks = self.world, [], cKDTree(self.marks)
         taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
         for room in w.plan.get("rooms", []):
-            name, parts = str(room.get("type", "")), np.array(cover_polygon(room["polygon"]))
+            name, parts = str(room.get("type", "")), cover_polygon(room["polygon"])
             size = np.array([text_width(name, NAME_PX) / 2 + AIR_PX, NAME_PX / 2 + AIR_PX]) / self.px_per_m
             low, high, spots = np.min(room["polygon"], 0), np.max(room["polygon"], 0), w.spots_in(room)
             spots = spots[(abs(spots[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
@@ -167,7 +167,7 @@ class Map(Canvas):
             along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
             free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
             free = free.reshape(-1, 7).min(1)
-            beyond = box_distance(along, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1).reshape(-1, 7).max(1)
+            beyond = box_distance(along, *columns(parts)).min(1).reshape(-1, 7).max(1)
             best = spots[(free - 2 * beyond - 0.05 * np.hypot(*(spots - (low + high) / 2).T)).argmax()]
             taken = np.append(taken, [[best, size]], 0)
             named.append((self.at(best), name))

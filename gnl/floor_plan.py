@@ -9,7 +9,8 @@
 
 Metres; `height` is an object's own extent above `z0`; walls end where a door begins. There must be `walls`; of a door
 its segment, of a room its polygon (3 to 400 corners), of an object class, polygon and height. Keys that are not listed
-are left as they are. Each fault is one ValueError: file, place in the file, what was expected, what was found.
+are left as they are (but all `colors` are colours). Each fault is one ValueError: file, place in the file, what was
+expected, what was found.
 """
 
 import json

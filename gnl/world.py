@@ -18,7 +18,7 @@ import numpy as np
 from . import floor_plan
 from .classes import CEILING, DOOR, FLOOR, WALL, class_of
 from .free_space import FreeSpace, box_distance
-from .polygons import cover_polygon
+from .polygons import columns, cover_polygon
 
 WALL_THICKNESS_M = 0.1
 LEAF_THICKNESS_M = 0.04
@@ -55,9 +55,8 @@ class World:
         walls = [_panel(wall, WALL_THICKNESS_M, 0.0, self.wall_height, WALL, wall_colour) for wall in plan["walls"]]
         doors = plan.get("doors", [])
         shut = [_panel(d["segment"], WALL_THICKNESS_M, 0.0, self.wall_height, DOOR, wall_colour) for d in doors]
-        sealed = np.array(walls + shut)
-        self.free_space = FreeSpace(self.bounds, sealed[:, 0:2], sealed[:, 2:4], sealed[:, 4])
-        boxes = walls + [box for door in doors for box in self._door(door, np.array(walls), wall_colour, rng)]
+        self.free_space = FreeSpace(self.bounds, *columns(walls + shut))
+        boxes = walls + [box for door in doors for box in self._door(door, walls, wall_colour, rng)]
         gaps = np.array([d["segment"] for d in doors], float).reshape(-1, 2, 2).mean(1)
         for thing in plan.get("objects", []):
             # CHOICE: a door among the objects that fills a gap is that door's leaf, told twice: the door decides.
@@ -68,7 +67,8 @@ class World:
             boxes += [(*box, z0, z0 + thing["height"], label, *colour) for box in cover_polygon(thing["polygon"])]
 
         boxes = np.array(boxes, float)
-        self.centre, self.half, self.angle = boxes[:, 0:2], boxes[:, 2:4].clip(THINNEST_M / 2), boxes[:, 4]
+        self.centre, self.half, self.angle = columns(boxes)
+        self.half = self.half.clip(THINNEST_M / 2)
         self.z, self.label, self.colour = boxes[:, 5:7], boxes[:, 7].astype(np.uint8), boxes[:, 8:11]
         self.z[:, 1] = self.z[:, 1].clip(self.z[:, 0] + THINNEST_M)
         self.carries = self._carries()
@@ -99,10 +99,10 @@ class World:
 
     def spots_in(self, room, step_m=0.2):
         """Points of a raster within a room of the plan: (n, 2)."""
-        parts = np.array(cover_polygon(room["polygon"]))
+        parts = cover_polygon(room["polygon"])
         low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
         spots = np.stack(np.meshgrid(*map(np.arange, low + step_m / 2, high, [step_m] * 2)), -1).reshape(-1, 2)
-        return spots[box_distance(spots, parts[:, :2], parts[:, 2:4], parts[:, 4]).min(1) == 0]
+        return spots[box_distance(spots, *columns(parts)).min(1) == 0]
 
     def out_of_reach(self):
         """Types of the rooms that no robot gets into: a doorway may be missing."""
@@ -139,7 +139,7 @@ class World:
         is_open = (door.get("state") or ("closed" if leads_out else "open")) == "open"
         # A segment along a wall is no gap: a folding door that stands open there. (One spot alone: a wall ends in it.)
         spots = hinge + np.array([[0.25], [0.5], [0.75]]) * (end - hinge)
-        walled = box_distance(spots, walls[:, 0:2], walls[:, 2:4], walls[:, 4]).min(1) < 0.1
+        walled = box_distance(spots, *columns(walls)).min(1) < 0.1
         folded = walled[1] and walled.sum() > 1
         if is_open and not folded:
             end = hinge + left * np.hypot(*(end - hinge))
