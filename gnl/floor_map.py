@@ -52,10 +52,10 @@ class Map(Canvas):
 
     def sight(self, pose, colour=ROBOT, farthest_m=9.0):
         """What a robot at `pose` can see: its field of view as far as the walls."""
-        s = slopes(256)
-        w_wall = cast(self.world, np.array([pose]), len(s)).w_wall  # 1/m, along the optical axis; 0 where there is none
-        reach = (np.hypot(1, s) / w_wall.clip(1e-9)).clip(0, farthest_m)
-        rim = pose[:2] + reach[:, None] * _ahead(pose[2] + np.arctan(s))
+        near = cast(self.world, np.array([pose]), 256).dense()[0][0]  # of each crossing; the last is mostly a wall
+        near = np.where(near < np.inf, near, -1).max(1, initial=-1)
+        reach = np.where(near < 0, np.inf, near).clip(0, farthest_m)  # what crosses nothing goes on
+        rim = pose[:2] + reach[:, None] * _ahead(pose[2] + np.arctan(slopes(256)))
         self.polygon(self.at([pose[:2], *rim]), (*colour, 30), (*colour, 130))
 
     def robot(self, pose, colour=ROBOT):

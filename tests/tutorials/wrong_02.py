@@ -46,8 +46,8 @@ def least_of_the_others(faces, others, s):
     return np.where(w_in > w_out, w_in, 0)
 
 
-def behind_the_camera_too(faces, others, s):
-    w_in = np.min([a + b * s for a, b in faces], axis=0)
+def first_face_alone(faces, others, s):
+    w_in = faces[0][0] + faces[0][1] * s
     w_out = np.max([a + b * s for a, b in others], axis=0)
     return np.where(w_in > w_out, w_in, 0)
 
@@ -62,5 +62,5 @@ def rightmost_first(n_columns):
 
 WRONG = {"2.1": [distance_for_depth, depth_for_distance, slopes_at_the_rims],
          "2.2": [distances_for_depths, slope_first, depth_linear_in_slope],
-         "2.3": [greatest_of_the_faces, least_of_the_others, behind_the_camera_too],
+         "2.3": [greatest_of_the_faces, least_of_the_others, first_face_alone],
          "2.4": [left_rims, rightmost_first]}

@@ -50,6 +50,7 @@ def grade_1_3(middle_of):
     expect("place 0", middle_of(0, (0.0, 0.0), 3), [1, 1, np.pi / 12])
     expect("place 56 of the two rooms", middle_of(56, (0.0, 0.0), 2), [5, 1, 17 * np.pi / 12])
     expect("place 131 of five rows from (-1, 2)", middle_of(131, (-1.0, 2.0), 5), [4, 3, 23 * np.pi / 12])
+    expect("place 155 of five rows from (-1, 2)", middle_of(155, (-1.0, 2.0), 5), [4, 7, 23 * np.pi / 12])
 
 
 def grade_1_4(distance_to_box):

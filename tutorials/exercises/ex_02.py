@@ -49,7 +49,7 @@ def grade_2_3(cross):
     expect("the box of the chapter", cross(*box, s), [0, 0, 0.5, 0.5, 0.5, 0, 0, 0])
     corner = np.array([[0.4, 0.4], [0.4, -0.4]]), np.array([[0.2, 0.2], [0.2, -0.2]])
     expect("a box that shows a corner", cross(*corner, s[2:6]), [0, 0.35, 0.35, 0])
-    behind = np.array([[-0.5, 0.0]]), np.array([[-1.0, 0.0]])
+    behind = np.array([[-1.0, 0.0]]), np.array([[-0.5, 0.0], [0.0, 1.0], [0.0, -1.0]])
     expect("a box behind the camera", cross(*behind, s[:2]), [0, 0])
 
 

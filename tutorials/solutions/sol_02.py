@@ -17,10 +17,10 @@ def line_through(p, q):
 
 
 def cross(faces, others, s):
-    """In below all faces, out at the first of the others; no box is nearer than infinity, so 0 is one of them."""
+    """In below all faces, out at the first of the others; behind the camera out comes first."""
     s = np.asarray(s, float)
     w_in = np.min([a + b * s for a, b in faces], axis=0)
-    w_out = np.max([0 * s] + [a + b * s for a, b in others], axis=0)
+    w_out = np.max([a + b * s for a, b in others], axis=0)
     return np.where(w_in > w_out, w_in, 0)
 
 
