@@ -88,7 +88,7 @@ class Map(Canvas):
         """Belief in each place (K,): a rose in each cell, its petals the bearings, dark where belief is."""
         for place in np.flatnonzero(pooled > 0.002):
             self.polygon(self.petal(place), (*PAPER, 170))  # on dark things, too, one shall see it
-            self.polygon(self.petal(place), (*colour, int(30 + 210 * pooled[place] ** 0.5)), (*colour, 160))
+            self.polygon(self.petal(place), (*colour, int(30 + 210 * pooled[place] ** 0.5)), (*INK, 200))
 
     def place(self, place, colour):
         """One place: its cell, and the petal of its bearing."""

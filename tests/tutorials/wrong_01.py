@@ -47,6 +47,11 @@ def origin_forgotten(place, origin, ny):
     return 2 * ix + 1, 2 * iy + 1, (ib + 0.5) * np.pi / 6
 
 
+def in_the_first_row(place, origin, ny):
+    cell, ib = divmod(place, 12)
+    return origin[0] + 2 * (cell // ny) + 1, origin[1] + 1, (ib + 0.5) * np.pi / 6
+
+
 def not_turned_at_all(point, centre, half, angle):
     (x, y), (a, b) = np.subtract(point, centre), half
     return np.hypot(max(0.0, abs(x) - a), max(0.0, abs(y) - b))
@@ -66,5 +71,5 @@ def farther_side_alone(point, centre, half, angle):
 
 WRONG = {"1.1": [rounded_down, one_cell_too_many, without_bearings],
          "1.2": [turned_the_wrong_way, not_turned, whole_sides],
-         "1.3": [rows_first, corner_of, origin_forgotten],
+         "1.3": [rows_first, corner_of, origin_forgotten, in_the_first_row],
          "1.4": [not_turned_at_all, not_zero_within, farther_side_alone]}

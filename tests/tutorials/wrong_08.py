@@ -54,6 +54,13 @@ def keeps_the_old_belief(belief, likelihood, p_move):
     return seen / seen.sum() if seen.sum() else belief
 
 
+def asks_the_likelihood_alone(belief, likelihood, p_move):
+    moved = p_move * np.roll(belief, 1) + (1 - p_move) * belief
+    seen = moved * likelihood if likelihood.sum() else moved
+    with np.errstate(invalid="ignore"):
+        return seen / seen.sum()
+
+
 WRONG = {
     "8.1": [lambda: ([1, 2, 2, 3], [0, 1, 2, 3]), lambda: ([2, 3, 4, 4], [1, 2, 3, 4]),
             lambda: ([0, 1, 2, 3], [0, 1, 2, 3])],
@@ -62,5 +69,5 @@ WRONG = {
     "8.3": [lambda weights: 1 / (weights ** 2).sum(), lambda weights: 1 / weights.sum() ** 2,
             lambda weights: (weights ** 2).sum() / weights.sum() ** 2],
     "8.4": [greatest_weight, how_many],
-    "8.5": [weigh_before_moving, backwards, keeps_the_old_belief],
+    "8.5": [weigh_before_moving, backwards, keeps_the_old_belief, asks_the_likelihood_alone],
 }

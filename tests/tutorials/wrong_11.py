@@ -45,6 +45,13 @@ def signed(pose, tests, t_xy, t_theta):
     return bool(distance[nearest] > t_xy and turned > t_theta)
 
 
+def as_far_is_far_enough(pose, tests, t_xy, t_theta):
+    distance = np.hypot(*(tests[:, :2] - pose[:2]).T)
+    nearest = distance.argmin()
+    turned = abs(np.angle(np.exp(1j * (pose[2] - tests[nearest, 2]))))
+    return bool(distance[nearest] >= t_xy and turned > t_theta)
+
+
 def only_old(now, before):
     return np.flatnonzero(now[:len(before)] != before)
 
@@ -69,5 +76,6 @@ def all_above(p, n, c):
     return ((1 - binom.cdf(np.arange(n), n, p)) ** c).sum() / n
 
 
-WRONG = {"11.1": [full_circle, diameter, draws_of_the_share], "11.2": [no_wrap, all_bearings, either, signed],
+WRONG = {"11.1": [full_circle, diameter, draws_of_the_share],
+         "11.2": [no_wrap, all_bearings, either, signed, as_far_is_far_enough],
          "11.3": [only_old, minus_one, all_of_them], "11.4": [at_least, no_share, all_above]}

@@ -70,6 +70,7 @@ def grade_6_5(mean_readout):
     expect("two graphs", mean_readout(H, np.array([0, 2, 3])), [[2, 3], [8, 6]])
     expect("a graph without nodes between them", mean_readout(H, np.array([0, 2, 2, 3])), [[2, 3], [0, 0], [8, 6]])
     expect("one at the end", mean_readout(H, np.array([0, 3, 3])), [[4, 4], [0, 0]])
+    expect("two at the end", mean_readout(H, np.array([0, 3, 3, 3])), [[4, 4], [0, 0], [0, 0]])
     expect("one at the beginning", mean_readout(H, np.array([0, 0, 3])), [[0, 0], [4, 4]])
 
 

@@ -68,6 +68,8 @@ def grade_8_5(bayes_step):
     expect("all views alike", bayes_step(start, np.ones(3), 0.8), [0.26, 0.46, 0.28])
     expect("a view of cell 1 or 2", bayes_step(start, np.array([0, 0.5, 1]), 0.8), np.array([0, 0.23, 0.28]) / 0.51)
     expect("a view that nothing explains", bayes_step(start, np.zeros(3), 1.0), [0.2, 0.5, 0.3])
+    certain, elsewhere = np.array([1.0, 0, 0]), np.array([1.0, 0, 1.0])
+    expect("a view that rules out where the robot must be", bayes_step(certain, elsewhere, 1.0), [0, 1, 0])
     expect("belief that was put in", start, [0.5, 0.3, 0.2])
 
 

@@ -5,8 +5,8 @@ from grader import expect, main
 
 
 def acceptance(n_tests, area_m2, t_xy_m, t_theta_deg):
-    """Exercise 11.1: forecast of the share of uniform poses beyond the gap, a float, and the draws wanted in the mean
-    for 10,000 of them, a float: (share, draws)."""
+    """Exercise 11.1: forecast of the share of uniform poses beyond the gap, a float, by the exponential of the chapter,
+    and the draws wanted in the mean for 10,000 of them, a float: (share, draws)."""
     raise NotImplementedError("exercise 11.1")
 
 
@@ -49,6 +49,7 @@ def grade_11_2(beyond_gap):
     expect("bearing of the farther test", beyond_gap(np.array([0.3, 0, np.pi]), tests, 0.2, half), True)
     expect("179 and -179 degrees", beyond_gap(np.array([0.7, 0, np.radians(-179)]), tests, 0.2, half), False)
     expect("turned to the right", beyond_gap(np.array([0.3, 0, -1.0]), tests, 0.2, half), True)
+    expect("just as far as the gap", beyond_gap(np.array([0.25, 0, 1.0]), tests, 0.25, half), False)
     expect("beyond in y", beyond_gap(np.array([0.0, 0.3, 1.0]), tests, 0.2, half), True)
 
 
