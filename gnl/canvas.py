@@ -13,7 +13,7 @@ from .classes import PALETTE
 PAPER, INK, QUIET, BAR, FAINT = (255, 255, 255), (38, 40, 46), (112, 116, 124), (158, 164, 174), (216, 219, 224)
 ROBOT, BELIEF, RIGHT, WRONG = (213, 94, 0), (92, 60, 160), (0, 140, 100), (196, 30, 58)
 TINTS = (250, 242, 226), (232, 243, 236), (234, 240, 249), (250, 236, 232), (242, 237, 248), (241, 243, 226)
-SMOOTH, LINE_PX = 2, 19  # enlargement; from one line of text to the next
+SMOOTH, LINE_PX = 4, 19  # enlargement; from one line of text to the next
 
 
 class Canvas:
@@ -78,4 +78,5 @@ def text_width(words, size):
 
 
 def _enlarged(points):
-    return [(SMOOTH * float(x), SMOOTH * float(y)) for x, y in points]
+    """For Pillow, to which a whole number is the middle of a pixel, not its rim."""
+    return [(SMOOTH * float(x) - 0.5, SMOOTH * float(y) - 0.5) for x, y in points]

@@ -79,7 +79,8 @@ def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), 
                 top + (height - bottom - top) * (y1 - y) / (y1 - y0))
 
     for y, words in y_ticks.items():
-        page.line([at(x0, y), at(x1, y)], FAINT)
+        spot = np.floor(at(x0, y)) + 0.5  # the middle of a pixel: a thin line is not smeared over two
+        page.line([spot, (at(x1, y)[0], spot[1])], FAINT)
         page.text((left - 8, at(x0, y)[1]), words, 11, QUIET, "rm")
     for x, words in x_ticks.items():
         page.text((at(x, y0)[0], height - bottom + 12), words, 11, QUIET, "mm")

@@ -102,7 +102,8 @@ def test_curves_rise_as_their_numbers_do_between_their_axes_and_only_ours_has_a_
     assert first[1] < min(ours) < max(ours) < last[1]
     assert last[0] == pytest.approx(scan_last[0], abs=2)
     assert (first[1] + last[1]) / 2 == pytest.approx((scan_first[1] + scan_last[1]) / 2, abs=1)  # 30, 70 and 50 %
-    names = {name: spots(np.array(picture)[:, 12 + 260 - 50:], draw_charts.LINES[name])[0][1] for name in methods}
+    aside = np.array(picture)[:, 12 + 260 - 50:].astype(int)  # letters are thin: few pixels are of their colour alone
+    names = {name: np.nonzero(abs(aside - draw_charts.LINES[name]).max(2) < 60)[0].mean() for name in methods}
     assert names["Ours"] < names["Scan"]
     methods["Ours"] = methods["Ours"] + [[-0.1], [0.1], [0], [0]]
     band = np.array(draw_charts.curves({800: methods}))
