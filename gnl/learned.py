@@ -55,7 +55,10 @@ def kept(folder, name, settings, load, learn):
     path = path_of(folder, name, settings)
     if not path.exists():
         return learn(path)
-    part, made_by = load(path)
+    try:
+        part, made_by = load(path)
+    except ValueError as error:
+        raise ValueError(f"{error}; remove it, and it is learned anew") from None
     if made_by != json.loads(json.dumps(settings)):
         raise ValueError(f"{path}: expected what was made by {settings}, found what was made by {made_by}")
     return part

@@ -42,7 +42,9 @@ class Experience:
             self.rewards.append(states[np.arange(len(states)), places])  # a state holds 1 / rank of every place
 
     def arrays(self):
-        """Steps (1 after the first view), states before, actions, states after, rewards."""
+        """Steps (1 after the first view), states before, actions, states after, rewards; of one look or more."""
+        if not self.steps:
+            raise ValueError("experience: expected at least one step, found none")
         return (np.concatenate(part) for part in (self.steps, self.seen, self.actions, self.states, self.rewards))
 
 

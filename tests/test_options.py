@@ -146,3 +146,8 @@ def test_the_race_decides_between_options_that_experience_finds_alike():
     experience = lived(*[(a, action, b, 11) for action in range(N_ACTIONS)])
     plan = planners.go_on(planners.greedy(options_of(experience, 4, 1, worth=(0.2, 0.1, 0.3))))
     assert plan(0, np.stack([a, b]), np.random.default_rng(0)).tolist() == [2, 2]
+
+
+def test_no_experience_is_named():
+    with pytest.raises(ValueError, match="experience: expected at least one step, found none"):
+        Options(Experience(), np.zeros((3, 4), int), np.zeros(3))
