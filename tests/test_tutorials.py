@@ -268,13 +268,35 @@ def test_right_answers_are_counted_and_wrong_ones_are_told_with_what_was_got_and
     def grade_4(double):
         double(None)
 
-    graders = enumerate((grade_1, grade_2, grade_3, grade_4), 1)
+    def grade_5(double):
+        grader.expect("a word for a number", str(double(2)), 4)
+
+    graders = enumerate((grade_1, grade_2, grade_3, grade_4, grade_5), 1)
     assert grader.grade({f"1.{i}": (double, check) for i, check in graders}) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "1.1  right"
     assert lines[1] == "1.2  not yet: double of (1, 2) at (1,): got 4, expected 5"
     assert lines[2] == "1.3  not yet: shape: got shape (2,), expected (1, 2)"
-    assert re.fullmatch(r"1\.4  not yet: TypeError in line \d+: .*", lines[3])
+    told = re.fullmatch(r"1\.4  not yet: TypeError in line (\d+): .*", lines[3])
+    assert Path(__file__).read_text().splitlines()[int(told[1]) - 1] == "        return 2 * np.asarray(x)"
+    assert lines[4] == "1.5  not yet: a word for a number: got 4 (of type <U1), expected 4"
+
+
+def test_a_fault_in_a_library_is_told_by_the_line_that_called_it_and_a_lacking_return_by_its_name(capsys):
+    def total(x):
+        return np.concatenate(x)
+
+    def lacking(x):
+        2 * x
+
+    def grade_it(answer):
+        grader.expect("sum", answer(3), 3)
+
+    assert grader.grade({"1.1": (total, grade_it), "1.2": (lacking, grade_it)}) == 0
+    lines = capsys.readouterr().out.splitlines()
+    line, = re.fullmatch(r"1\.1  not yet: \w+ in line (\d+): .*", lines[0]).groups()
+    assert "np.concatenate" in Path(__file__).read_text().splitlines()[int(line) - 1]
+    assert lines[1] == "1.2  not yet: lacking returned None: is its return missing?"
 
 
 @pytest.mark.parametrize(("got", "words"), [(Fraction(1, 3), None), (0.33333333, None), (Fraction(1, 4), "got 1/4"),

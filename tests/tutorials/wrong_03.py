@@ -60,7 +60,21 @@ def slope_for_length(distance, s, z, size):
     return (1 - (z - HEIGHT_M) * w) * size / 2
 
 
+def one_of_those_that_begin_together(begin, end, size):
+    change = [0] * (size + 1)
+    for i in range(len(begin)):
+        change[begin[i]] ^= 1 << i
+    ends = dict(zip(end, range(len(end)), strict=True))  # of equal ends one is left
+    shown, on = np.full(size, -1), 0
+    for row in range(size):
+        on ^= change[row]
+        if row in ends:
+            on &= ~(1 << ends[row])
+        shown[row] = (on & -on).bit_length() - 1
+    return shown
+
+
 WRONG = {"3.1": [upside_down, camera_on_the_floor, whole_height],
          "3.2": [highest_bit, value_of_the_bit, number_of_ones],
-         "3.3": [near_to_far, end_included, none_is_zero],
+         "3.3": [near_to_far, end_included, none_is_zero, one_of_those_that_begin_together],
          "3.4": [stretched_twice, slope_for_length]}

@@ -116,11 +116,37 @@ def cyclic(dout, x, w):
     return sum(np.roll(dout, u - 1) * w[u] for u in range(3)), dw
 
 
+def no_floor(f, x, dx, eps=1e-6):
+    worst = 0.0
+    for i in range(x.size):
+        kept = x.flat[i]
+        x.flat[i] = kept + eps
+        up = f()
+        x.flat[i] = kept - eps
+        down = f()
+        x.flat[i] = kept
+        numeric = (up - down) / (2 * eps)
+        if size := abs(numeric) + abs(dx.flat[i]):
+            worst = max(worst, abs(numeric - dx.flat[i]) / size)
+    return worst
+
+
+def greatest_of_all_rows(scores, labels):
+    p = np.exp(scores - scores.max())
+    p /= p.sum(1, keepdims=True)
+    p[np.arange(len(labels)), labels] -= 1
+    return p / len(labels)
+
+
+def clipped(scores, labels):
+    return greatest_of_all_rows(np.clip(scores, -500, 500), labels)
+
+
 WRONG = {
     "4.1": [checker(down=0.0, over=1.0), checker(over=1.0), checker(restore=False), checker(relative=False),
-            checker(combine=np.mean), checker(entries=1), checker(combine=min), nudges_a_copy, sign_lost],
+            checker(combine=np.mean), checker(entries=1), checker(combine=min), nudges_a_copy, sign_lost, no_floor],
     "4.2": [weight_not_transposed, transposed_dw, mean_for_db, mean_for_dw],
-    "4.3": [sum_for_mean, sign_turned, wrong_axis, unshifted, over_all_entries],
+    "4.3": [sum_for_mean, sign_turned, wrong_axis, unshifted, over_all_entries, greatest_of_all_rows, clipped],
     "4.4": [unturned, both_turned, without_border, cyclic],
     "4.5": [lambda: (81, 2320), lambda: (25, 2304), lambda: (9, 2320), lambda: (25, 160)],
 }

@@ -77,9 +77,33 @@ def one_a_class(labels):
     return len(np.unique(labels))
 
 
+def one_alias_a_name(labels):
+    name, same = {}, {}
+    for y, x in np.ndindex(labels.shape):
+        near = [name[p] for p in ((y, x - 1), (y - 1, x)) if p in name and labels[p] == labels[y, x]]
+        name[y, x] = min(near, default=len(name))
+        if len(set(near)) == 2:
+            same[max(near)] = min(near)  # and what it was the same as is forgotten
+
+    def first(n):
+        return first(same[n]) if n in same else n
+
+    return len({first(n) for n in name.values()})
+
+
+def meetings_taken_off(labels):
+    new = merged = 0
+    for y, x in np.ndindex(labels.shape):
+        left = x > 0 and labels[y, x - 1] == labels[y, x]
+        above = y > 0 and labels[y - 1, x] == labels[y, x]
+        new += not (left or above)
+        merged += left and above and labels[y - 1, x - 1] != labels[y, x]
+    return new - merged
+
+
 WRONG = {
     "5.1": [size_of_the_region, all_pairs, specks_too],
     "5.2": [strictly_more, cells_of_170, cells_of_171, rows_at_200_and_300, down_before_across],
     "5.3": [rounded_down, one_more, by_the_width],
-    "5.4": [by_corners_too, only_the_pixel_to_the_left, one_a_class],
+    "5.4": [by_corners_too, only_the_pixel_to_the_left, one_a_class, one_alias_a_name, meetings_taken_off],
 }

@@ -42,12 +42,29 @@ def nothing_is_below_zero(q, reward, ahead, done, alpha, gamma):
     return q + alpha * (reward + (not done) * gamma * max(0, *ahead) - q)
 
 
+def around_the_block(states, values, query, k):
+    distance = abs(states - query).sum(1)
+    nearest = np.argsort(distance, kind="stable")[:k]
+    if not len(values):
+        return 0.0
+    return values[nearest[0]] if distance[nearest[0]] == 0 else values[nearest].mean()
+
+
+def few_before_met(states, values, query, k):
+    if len(values) <= k:
+        return values.mean() if len(values) else 0.0
+    distance = np.sqrt(((states - query) ** 2).sum(1))
+    nearest = np.argsort(distance, kind="stable")[:k]
+    return values[nearest[0]] if distance[nearest[0]] == 0 else values[nearest].mean()
+
+
 WRONG = {
     "9.1": [lambda: [0.125, 0.25, 0.5, 1], lambda: [0, 0, 0.5, 1], lambda: [0, 0.101, 0.45, 0.875]],
     "9.2": [forgets_the_end, mean_of_what_is_ahead, step_without_q, nothing_is_below_zero],
-    "9.3": [without_revisit, entry_0_is_no_revisit, sum_over_k],
+    "9.3": [without_revisit, entry_0_is_no_revisit, sum_over_k, around_the_block, few_before_met],
     "9.4": [to_the_middle, lambda query, low, high: np.abs(query.clip(low, high) - query).sum(),
-            lambda query, low, high: ((query.clip(low, high) - query) ** 2).sum()],
+            lambda query, low, high: ((query.clip(low, high) - query) ** 2).sum(),
+            lambda query, low, high: np.hypot(*(query.clip(low, high) - query)[:2])],
     "9.5": [lambda K: (1 / np.arange(1, K + 1) ** 2).sum(), lambda K: 1 + (1 / np.arange(2, K + 1) ** 2).sum(),
             lambda K: 1 + (1 / np.arange(3, K) ** 2).sum()],
 }

@@ -88,7 +88,18 @@ def nearest_alone(rewards, near, length):
     return ahead
 
 
+def along_the_first(rewards, near, length):
+    values = reward = rewards / length
+    for _ in range(length - 1):
+        values, near = values + reward[near].mean(1), near[near[:, 0]]
+    return values
+
+
+def over_square(outcomes, drawn):
+    return outcomes[drawn].sum((1, 2)) / outcomes.shape[1] ** 2
+
+
 WRONG = {"10.1": [one_of_nine, pairs_as_if_independent, four_pairs],
          "10.2": [one_sided, not_the_seen_one, above_one, lower_tail_of_a],
-         "10.3": [as_if_not_paired, of_one_episode, by_n], "10.4": [wrong_axis, over_rounds, no_repeats],
-         "10.5": [one_step_too_many, not_shared_out, nearest_alone]}
+         "10.3": [as_if_not_paired, of_one_episode, by_n], "10.4": [wrong_axis, over_rounds, no_repeats, over_square],
+         "10.5": [one_step_too_many, not_shared_out, nearest_alone, along_the_first]}

@@ -1,5 +1,7 @@
 """Plausible wrong answers to the exercises of chapter 12."""
 
+import copy
+
 import numpy as np
 
 from gnl.classes import from_ade20k
@@ -93,6 +95,32 @@ def none_is_wall(labels):
     return from_ade20k(np.where(labels == 255, 0, labels) + 1)
 
 
-WRONG = {"12.1": [into_the_old_list, turned, about_the_middle, crossed],
-         "12.2": [drawn_every_step, with_forward, once_and_for_all, one_for_all],
+def a_list_for_the_old_plan(plan, kind, x, y, width, depth, height):
+    plan.setdefault("objects", [])
+    new = copy.deepcopy(plan)
+    corners = [[x, y], [x + width, y], [x + width, y + depth], [x, y + depth]]
+    new["objects"].append({"class": kind, "polygon": corners, "height": height})
+    return new
+
+
+def luck_of_its_own():
+    own, kept = np.random.default_rng(), {}
+
+    def plan(step, states, _rng):
+        if step == 0:
+            kept["drawn"] = own.integers(2, size=len(states))
+        return kept["drawn"]
+    return plan
+
+
+def remembered_by_all(kept={}):  # noqa: B006 (that is the mistake)
+    def plan(step, states, rng):
+        if step == 0:
+            kept["drawn"] = rng.integers(2, size=len(states))
+        return kept["drawn"]
+    return plan
+
+
+WRONG = {"12.1": [into_the_old_list, turned, about_the_middle, crossed, a_list_for_the_old_plan],
+         "12.2": [drawn_every_step, with_forward, once_and_for_all, one_for_all, luck_of_its_own, remembered_by_all],
          "12.3": [of_all, no_smoothing, smoothed_above_alone], "12.4": [not_shifted, beyond_the_table, none_is_wall]}

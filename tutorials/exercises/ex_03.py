@@ -53,6 +53,7 @@ def grade_3_3(visible):
            [3] * 6 + [2] * 3 + [1] + [0] * 3 + [4] * 3)
     expect("nothing there", visible(*column(), 3), [-1, -1, -1])
     expect("a gap, and one behind another", visible(*column((1, 3), (0, 2), (5, 6)), 6), [1, 0, 0, -1, -1, 2])
+    expect("three that begin or end together", visible(*column((0, 2), (0, 4), (1, 4)), 5), [0, 0, 1, 1, -1])
     expect("a far one behind two near ones", visible(*column((0, 2), (4, 5), (1, 6)), 7), [0, 0, 2, 2, 1, 2, -1])
 
 
@@ -60,7 +61,10 @@ def grade_3_4(top_of_wall):
     s = np.array([0.75, 0.25, -0.25, -0.75])
     expect("a wall 2 m straight ahead", top_of_wall(2 * np.hypot(1, s), s, 2.5, 512), [96, 96, 96, 96])
     w = (1 + s) / 4
-    expect("the wall x + y = 4", top_of_wall(np.hypot(1, s) / w, s, 2.25, 16), [4.5, 5.5, 6.5, 7.5])
+    distance = np.hypot(1, s) / w
+    kept = distance.copy()
+    expect("the wall x + y = 4", top_of_wall(distance, s, 2.25, 16), [4.5, 5.5, 6.5, 7.5])
+    expect("the distances after that", distance, kept)
 
 
 TASKS = {"3.1": (three_rows, grade_3_1), "3.2": (lowest_bit, grade_3_2), "3.3": (visible, grade_3_3),

@@ -55,6 +55,9 @@ def grade_4_1(gradient_error):
         wrong.flat[i] *= -1
         expect(f"a wrong sign at entry {i} alone", gradient_error(lambda: (x ** 3).sum(), x, wrong), 1)
     expect("a gradient of zero", gradient_error(lambda: 0.0, x, 0 * x), 0)
+    expect("5e-7 for a gradient of zero", gradient_error(lambda: 0.0, x, 0 * x + 5e-7), 0.5)
+    for what, y in ("three dimensions", np.arange(1.0, 9).reshape(2, 2, 2)), ("an array on its side", x.T):
+        expect(what, gradient_error(lambda y=y: (y ** 3).sum(), y, 3 * y ** 2), 0, 1e-6)
     expect("a nudge of 1: 3 x^2 + 1", gradient_error(lambda: (x ** 3).sum(), x, right + 1, eps=1.0), 0, 1e-9)
 
 
@@ -75,6 +78,11 @@ def grade_4_3(loss_gradient):
     scores, labels = rng.standard_normal((6, 5)), rng.integers(5, size=6)
     expect("six rows", loss_gradient(scores.copy(), labels), nn.softmax_cross_entropy(scores, labels)[1])
     expect("a score of 1000", loss_gradient(np.array([[1000., 0]]), np.array([0])), [[0, 0]])
+    high = np.array([[1000., 999, -1000, -1000], [0, 0, 0, 0]])
+    kept = high.copy()
+    expect("scores of 1000 in one row alone", loss_gradient(high, np.array([0, 0])),
+           [[-.134471, .134471, 0, 0], [-.375, .125, .125, .125]], 1e-5)
+    expect("the scores after that", high, kept)
 
 
 def grade_4_4(row_backward):
@@ -85,9 +93,10 @@ def grade_4_4(row_backward):
         return sum(np.pad(x, 1)[u:u + 6] @ dout * w[u] for u in range(3))
 
     dx, dw = row_backward(dout.copy(), x.copy(), w.copy())
-    expect("shape of dx", np.shape(dx), (6,))
-    expect("dw: relative error against central differences", nn.gradient_error(loss, w, dw, rng), 0, 1e-5)
-    expect("dx: relative error against central differences", nn.gradient_error(loss, x, dx, rng), 0, 1e-5)
+    for name, array, grad in (("dx", x, dx), ("dw", w, dw)):
+        expect(f"shape of {name}", str(np.shape(grad)), str(array.shape))
+        error = nn.gradient_error(loss, array, np.asarray(grad), rng)
+        expect(f"{name}: relative error against central differences", error, 0, 1e-5)
 
 
 def grade_4_5(predict):

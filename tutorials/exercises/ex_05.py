@@ -68,6 +68,9 @@ def grade_5_4(count_regions):
     expect("a comb of five teeth", count_regions(comb), 5)
     wide = np.array([[1, 1, 0, 1, 1], [1, 0, 0, 0, 1], [1, 1, 1, 1, 1]])
     expect("a U with thick ends", count_regions(wide), 2)
+    expect("a ring around one pixel", count_regions(np.array([[2, 2, 2], [2, 1, 2], [2, 2, 2]])), 2)
+    maze = np.array([[0, 0, 0, 0, 1], [1, 0, 1, 1, 1], [1, 1, 1, 1, 0], [1, 1, 1, 0, 1], [1, 0, 1, 1, 1]])
+    expect("one that goes around corners", count_regions(maze), 5)
 
 
 TASKS = {

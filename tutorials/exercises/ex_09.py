@@ -50,6 +50,11 @@ def grade_9_3(q_of_neighbours):
     expect("exact revisit of entry 3", q_of_neighbours(states, values, np.array([0.0, 2]), 2), 4)
     expect("fewer than k", q_of_neighbours(states[:2], values[:2], np.array([1.0, 1]), 4), 5.5)
     expect("nothing stored", q_of_neighbours(states[:0], values[:0], np.array([1.0, 1]), 4), 0)
+    states, values = np.array([[3, 0, 0], [2, 2, 0], [1.9, 1.9, 1.9]]), np.array([0.0, 2, 3])
+    expect("the nearest as the crow flies", q_of_neighbours(states, values, np.zeros(3), 1), 2)
+    expect("exact revisit, fewer than k", q_of_neighbours(states, values, states[2], 4), 3)
+    expect("exact revisit of a pair worth 0", q_of_neighbours(states, values, states[0], 2), 0)
+    expect("near is not the same", q_of_neighbours(states, values, np.array([3.01, 0, 0]), 2), 1)
     ties = np.where(np.arange(40) % 2, 1.0, -2.0)[:, None]
     expect("ties go to the older pair", q_of_neighbours(ties, np.arange(40.0), np.zeros(1), 3), 3)
 
@@ -60,6 +65,7 @@ def grade_9_4(distance_to_box):
     expect("beside", distance_to_box(np.array([5.0, 2]), low, high), 3)
     expect("below", distance_to_box(np.array([1.5, -0.5]), low, high), 0.5)
     expect("beyond a corner", distance_to_box(np.array([-3.0, 8]), low, high), 5)
+    expect("above a cube", distance_to_box(np.array([1.0, 1, 9]), np.zeros(3), np.full(3, 2.0)), 7)
 
 
 def grade_9_5(most_in_common):

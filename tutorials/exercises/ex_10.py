@@ -7,7 +7,8 @@ from grader import expect, main
 def undone_by_chance():
     """Exercise 10.1: of a planner of pure chance with the actions left, right, forward: (share, probability), 0..1.
 
-    share of its pairs of successive actions that undo a turn; probability that four actions hold no such pair
+    share of its pairs of successive actions that undo a turn; probability that four actions hold no such pair; both
+    to four digits at least
     """
     raise NotImplementedError("exercise 10.1")
 
@@ -39,9 +40,9 @@ def cell_means(outcomes, drawn):
 
 
 def option_values(rewards, near, length):
-    """Exercise 10.5: V_length, the worth of n remembered steps of one action if it is gone on with: (n,).
+    """Exercise 10.5: V_L, the worth of n remembered steps of one action if it is gone on with: (n,).
 
-    That of a step is its reward / L, and the mean of V_(length - 1) over the steps near it.
+    V_d of a step, d = 1 .. L, is its reward / L (always this L), and the mean of V_(d - 1) over the steps near it.
 
     rewards (n,);  near (n, k) numbers of the steps whose states are nearest to the state after each;  length L >= 1
     """
@@ -50,8 +51,8 @@ def option_values(rewards, near, length):
 
 def grade_10_1(undone_by_chance):
     share, probability = undone_by_chance()
-    expect("share of pairs that undo a turn", share, 0.222222, 1e-5)
-    expect("probability of none in four actions", probability, 0.506173, 1e-5)
+    expect("share of pairs that undo a turn", share, 2 / 9, 5e-5)
+    expect("probability of none in four actions", probability, 41 / 81, 5e-5)
 
 
 def grade_10_2(mcnemar):
@@ -60,6 +61,7 @@ def grade_10_2(mcnemar):
     expect("6 against 0", mcnemar(6, 0), 0.03125)
     expect("3 against 3", mcnemar(3, 3), 1.0)
     expect("0 against 0", mcnemar(0, 0), 1.0)
+    expect("700 against 690", mcnemar(700, 690), 0.809257, 1e-5)
 
 
 def grade_10_3(paired_interval):
@@ -73,6 +75,8 @@ def grade_10_4(cell_means):
     expect("two rounds", cell_means(outcomes, np.array([[0, 0, 1], [2, 2, 2]])), [3, 3])
     expect("four rounds", cell_means(outcomes, np.array([[1, 1, 1], [0, 1, 1], [0, 0, 0], [2, 1, 0]])),
            [5, 4, 2, 10 / 3])
+    outcomes, drawn = np.array([[0, 1, 1], [1, 0, 0]]), np.array([[0, 0], [0, 1], [1, 1]])
+    expect("two cells of three episodes", cell_means(outcomes, drawn), [2 / 3, 1 / 2, 1 / 3])
 
 
 def grade_10_5(option_values):
@@ -80,7 +84,9 @@ def grade_10_5(option_values):
     expect("one step", option_values(rewards, near, 1), [1 / 2, 1, 1 / 3])
     expect("two steps", option_values(rewards, near, 2), [3 / 4, 2 / 3, 5 / 12])
     expect("three steps", option_values(rewards, near, 3), [11 / 18] * 3)
-    expect("two neighbours", option_values(rewards, np.array([[1, 2], [2, 0], [0, 1]]), 2), [7 / 12, 17 / 24, 13 / 24])
+    both = np.array([[1, 2], [2, 0], [0, 1]])
+    expect("two neighbours", option_values(rewards, both, 2), [7 / 12, 17 / 24, 13 / 24])
+    expect("two neighbours, three steps", option_values(rewards, both, 3), np.array([42, 51, 39]) / 72)
 
 
 TASKS = {"10.1": (undone_by_chance, grade_10_1), "10.2": (mcnemar, grade_10_2), "10.3": (paired_interval, grade_10_3),

@@ -1,6 +1,7 @@
 """Exercises of chapter 12. Fill in each function, then run this file."""
 
 import copy
+import json
 
 import numpy as np
 from grader import expect, main
@@ -17,7 +18,8 @@ def with_box(plan, kind, x, y, width, depth, height):
 def steady():
     """Exercise 12.2: a planner plan(step, states, rng) -> actions (B,).
 
-    At step 0 each robot draws left (0) or right (1), each with probability 1/2; it keeps to that for the episode.
+    At step 0 each robot draws left (0) or right (1) by `rng`, each with probability 1/2; it keeps to that for the
+    episode.
     """
     raise NotImplementedError("exercise 12.2")
 
@@ -47,29 +49,40 @@ def grade_12_1(with_box):
     expect("height", thing["height"], 0.8)
     expect("bottom", thing.get("z0", 0.0), 0.0)
     corners = np.array(thing["polygon"], float)
-    expect("shape of the polygon", corners.shape, (4, 2))
+    expect("shape of the polygon", str(corners.shape), "(4, 2)")
     expect("corners, sorted", sorted(corners.tolist()), [[1.0, 2.0], [1.0, 2.9], [3.5, 2.0], [3.5, 2.9]])
     (x, y), (next_x, next_y) = corners.T, np.roll(corners, -1, 0).T
     expect("area, corners in their order", abs((x * next_y - y * next_x).sum()) / 2, 2.25)
-    expect("a plan without objects", len(with_box({"walls": [[0, 0, 4, 0]]}, "tv", 0, 0, 1, 1, 1)["objects"]), 1)
+    expect("all else is as it was", {**new, "objects": new["objects"][:1]} == plan, True)
+    expect("it can be written as JSON", json.loads(json.dumps(new)) == new, True)
+    bare = {"walls": [[0, 0, 4, 0]]}
+    expect("a plan without objects", len(with_box(bare, "tv", 0, 0, 1, 1, 1)["objects"]), 1)
+    expect("the old plan without objects is as it was", bare == {"walls": [[0, 0, 4, 0]]}, True)
 
 
 def grade_12_2(steady):
-    plan, rng = steady(), np.random.default_rng(0)
-    first = np.array(plan(0, np.zeros((400, 3)), rng))
-    expect("shape of the actions", first.shape, (400,))
+    plan, rng, states = steady(), np.random.default_rng(0), np.zeros((4000, 3))
+    first = np.array(plan(0, states, rng))
+    expect("shape of the actions", str(first.shape), "(4000,)")
     expect("left and right alone", np.unique(first), [0, 1])
-    expect("each for about half of the robots", abs(first.mean() - 0.5) < 0.1, True)
+    expect("each for about half of the robots", abs(first.mean() - 0.5) < 0.04, True)
     for step in (1, 2, 3):
-        expect(f"the same in step {step}", plan(step, np.zeros((400, 3)), rng), first)
-    again = np.array(plan(0, np.zeros((400, 3)), rng))
+        expect(f"the same in step {step}", plan(step, states, rng), first)
+    other = steady()
+    drawn = np.array(other(0, states, np.random.default_rng(0)))
+    expect("the same luck draws the same", drawn, first)
+    other(0, states, np.random.default_rng(1))
+    expect("another planner has a memory of its own", plan(1, states, rng), first)
+    again = np.array(plan(0, states, rng))
     expect("drawn anew in the next episode", bool((again != first).any()), True)
     expect("robots of the next group", np.shape(plan(0, np.zeros((7, 3)), rng)), (7,))
 
 
 def grade_12_3(log_words):
     counts = np.array([[3.0, 1, 0], [0, 0, 2]])
+    kept = counts.copy()
     found = log_words(counts, 1.0)
+    expect("the counts after that", counts, kept)
     expect("sum over the words of a place", np.exp(found).sum(1), [1, 1])
     expect("log P", found, np.log([[4 / 7, 2 / 7, 1 / 7], [1 / 5, 1 / 5, 3 / 5]]))
     expect("a place where nothing was seen", log_words(np.zeros((1, 4))), np.log([[0.25] * 4]))

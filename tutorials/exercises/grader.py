@@ -28,7 +28,8 @@ def expect(what, got, expected, tolerance=1e-6):
     if not np.all(same):
         where = f" at {tuple(int(i) for i in np.argwhere(~np.asarray(same))[0])}" if got_array.ndim else ""
         first = (got_array[~same].flat[0], expected_array[~same].flat[0]) if got_array.ndim else (got, expected)
-        raise Wrong(f"{what}{where}: got {first[0]}, expected {first[1]}")
+        kind = f" (of type {got_array.dtype})" if str(first[0]) == str(first[1]) else ""
+        raise Wrong(f"{what}{where}: got {first[0]}{kind}, expected {first[1]}")
 
 
 def grade(tasks):
@@ -38,14 +39,21 @@ def grade(tasks):
 
 def is_right(number, answer, grader):
     """Whether an answer passes its grader; prints what was seen."""
+    def given(*arguments, **options):
+        value = answer(*arguments, **options)
+        if value is None:
+            raise Wrong(f"{answer.__name__} returned None: is its return missing?")
+        return value
+
     try:
-        grader(answer)
+        grader(given)
     except NotImplementedError as error:
         print(f"{number}  to do: {error}")
     except Wrong as wrong:
         print(f"{number}  not yet: {wrong}")
     except Exception as error:
-        line = traceback.extract_tb(error.__traceback__)[-1].lineno
+        here = grader.__code__.co_filename  # the learner's file, not one of a library that it calls
+        *_, line = (frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == here)
         print(f"{number}  not yet: {type(error).__name__} in line {line}: {error}")
     else:
         print(f"{number}  right")
