@@ -5,8 +5,8 @@ A label image holds the index of a class in CLASSES: 0 wall, 1 floor, ... 9 othe
 
 import numpy as np
 
-# To add one: its name and its constant below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py;
-# then learn anew.
+# To add one: its name and its constant below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py, and
+# things that bear it in data_gen/furniture.py; then learn anew. Tests that know the paper's ten will say so.
 CLASSES = ("wall", "floor", "ceiling", "bed", "door", "table", "sofa", "refrigerator", "tv", "other")
 WALL, FLOOR, CEILING, BED, DOOR, TABLE, SOFA, REFRIGERATOR, TV, OTHER = range(len(CLASSES))
 N_CLASSES = len(CLASSES)
@@ -33,6 +33,8 @@ ADE20K = {1: WALL, 4: FLOOR, 6: CEILING, 8: BED, 15: DOOR, 16: TABLE, 24: SOFA, 
 def from_ade20k(labels):
     """Labels of the ten classes from ADE20K's indices 0..150, of any shape; ValueError for others."""
     labels = np.asarray(labels)
+    if not np.issubdtype(labels.dtype, np.integer):
+        raise ValueError(f"labels: expected whole numbers, found {labels.dtype}")
     if labels.size and not 0 <= labels.min() <= labels.max() <= 150:
         raise ValueError(f"labels: expected ADE20K's indices 0..150, found {labels.min()}..{labels.max()}")
     table = np.full(151, OTHER, np.uint8)

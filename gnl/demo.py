@@ -88,7 +88,7 @@ def learn(args, scale, helper, world, grid, robot):
     n_known, (word, _, seed) = views_made_by.get("homes", 0), world.name.partition("-")
     if word == "home" and seed.isdecimal() and seed == str(int(seed)) and int(seed) < n_known:
         raise ValueError(f"{args.plan}: expected a home that the net does not learn from (HOUSE from {n_known} on), "
-                         f"found {world.name}")
+                         f"found {world.name}; a home of your own needs another name")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
     seen, true = render(world, world.free_poses(200, rng(args, 8)), rng(args, 9), segnet.SIZE_PX, args.noise)
     right, overlap = segnet.accuracy(segnet.predict(net, seen), true)

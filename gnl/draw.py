@@ -24,7 +24,7 @@ from .canvas import (
     colour_of,
     text_width,
 )
-from .classes import CLASSES, N_CLASSES, PALETTE
+from .classes import CLASSES, N_CLASSES, OTHER, PALETTE
 from .files import write_whole
 from .floor_map import Map, column_name, row_name
 from .scene_graph import VIEW_PX, words_in_words
@@ -34,7 +34,7 @@ LOCATIONS = ("upper left", "upper centre", "upper right", "left", "centre", "rig
              "lower left", "lower centre", "lower right")
 MARKS = {  # what stands for what on a map and in a strip, drawn at a place of a page
     "start": lambda page, x, y: page.arrow((x - 1, y), 0.4, 14, QUIET),
-    "pale": lambda page, x, y: page.box(x - 7, y - 6, x + 7, y + 7, colour_of(N_CLASSES - 1, 70), QUIET),
+    "pale": lambda page, x, y: page.box(x - 7, y - 6, x + 7, y + 7, colour_of(OTHER, 70), QUIET),
     "robot": lambda page, x, y: page.dial((x, y), 0.4, 7, ROBOT),
     "sight": lambda page, x, y: page.polygon([(x - 7, y), (x + 7, y - 7), (x + 7, y + 7)], (*ROBOT, 40), (*ROBOT, 160)),
     "particles": lambda page, x, y: [page.disc((x + dx, y + dy), 1.5, BELIEF) for dx, dy in ((-4, 2), (0, -3), (4, 3))],

@@ -15,7 +15,7 @@ from .scene_graph import VIEW_PX, scene_graph, words_in_words
 
 def add_arguments(parser):
     """Options of `python -m gnl graph`."""
-    parser.add_argument("labels", help="image of one class index a pixel, 0..9 in the order "
+    parser.add_argument("labels", help=f"image of one class index a pixel, 0..{N_CLASSES - 1} in the order "
                                        f"{', '.join(CLASSES)}, or in the colours of our pictures")
     parser.add_argument("--ade20k", action="store_true", help="the indices are ADE20K's 0..150, 0 for no label")
     parser.add_argument("--out", help="picture to write, scaled to 512 x 512 as the boxes "

@@ -88,9 +88,12 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             actions = senses.timed("plan", plan, step - 1, states, exploring)
             if actions is None:
                 break
+            actions = np.array(actions)  # a planner may use its own again
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
             kept["actions"].append(actions)
         scores = senses.scores(poses, appearance)
+        if np.shape(scores) != (B, grid.n_places):
+            raise ValueError(f"scores: expected shape ({B}, {grid.n_places}), found {np.shape(scores)}")
         likelihood = rules.likelihood(scores)
         if particles:
             senses.timed("filter", _update, particles, odometry, likelihood)
@@ -118,6 +121,8 @@ def run_all(senses, robot, grid, plan, starts, seed, progress=None, **options):
         records.append(run(senses, robot, grid, plan, group, child, **options))
         if progress:
             progress(len(records) / len(groups), np.concatenate([record.correct[:, -1] for record in records]).mean())
+    if len(n_looks := {record.places.shape[1] for record in records}) > 1:
+        raise ValueError(f"plan: expected to end all groups of robots after as many looks, found {sorted(n_looks)}")
     return Record(*(np.concatenate([getattr(r, name) for r in records]) for name in Record.__dataclass_fields__))
 
 
@@ -134,8 +139,9 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
 
     checkpoint_every : take one after so many episodes, and so again. Robots that learn side by side end there: with
     another number, or none, the same seed learns otherwise
-    store : an empty NNQL of other settings;  watch(step, **what happened) is called after every look, as in `run`;
-    the rules' reward gets what happened, too, and `done`, whether nothing comes after
+    store : an NNQL of other settings, or one that goes on learning (its exploration begins anew)
+    watch(step, **what happened) is called after every look, as in `run`; the rules' reward gets what happened, too, and
+    `done`, whether nothing comes after
     progress(share done, recent share of right answers)
     """
     if checkpoint_every is not None:

@@ -75,7 +75,7 @@ def run_cell(cell, senses, starts, settings=None):
 
     def test(plans, poses, seed):  # all from the same starts with the same luck
         shared = SharedSenses(senses)
-        return {name: outcomes(grid, episode.run_all(shared, robot, grid, plan, poses, seed))
+        return {name: outcomes(grid, episode.run_all(shared, robot, grid, plan, poses, seed), 1 + episode.LENGTH)
                 for name, plan in plans.items()}
 
     plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]),
@@ -94,8 +94,9 @@ def run_cell(cell, senses, starts, settings=None):
 
 def made_from(senses):
     """What identifies home, net and classifier."""
+    params = getattr(senses.gcn, "params", None)  # another classifier may have none
     return {"home": learned.digest(senses.world.plan), "net": senses.net and learned.fingerprint(senses.net),
-            "gcn": learned.fingerprint(getattr(senses.gcn, "params", {}))}  # another classifier may have none
+            "gcn": learned.fingerprint(params) if params else type(senses.gcn).__name__}
 
 
 def now():

@@ -105,7 +105,7 @@ def check(plan, source="floor plan"):
 
     def items(key):
         value = plan.get(key, [])
-        if not isinstance(value, list):
+        if not isinstance(value, (list, tuple)):
             fail(key, "a list", value)
         for i, item in enumerate(value):
             if not isinstance(item, dict):
@@ -118,7 +118,7 @@ def check(plan, source="floor plan"):
         fail("units", '"m"', plan["units"])
     number(plan.get("wall_height", WALL_HEIGHT_M), "wall_height", at_least=LOWEST_WALL_M)
     walls = plan.get("walls")
-    if not isinstance(walls, list) or not walls:
+    if not isinstance(walls, (list, tuple)) or not walls:
         fail("walls", "a list of at least one wall", walls)
     for i, wall in enumerate(walls):
         segment(wall, f"walls[{i}]")

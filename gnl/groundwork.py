@@ -43,8 +43,8 @@ def taught_net(out, settings, **others):
     """The segmentation net; `others` are other options of `python -m data_gen views`, for another net than ours."""
     options = {"homes": settings.net_homes, "views": settings.net_views, "noise": settings.noise, **others}
     views = out / "data" / ("views" + "".join(f"-{name}-{value}" for name, value in others.items()) + ".npz")
-    if not views.exists():
-        _draw("views", views, *(part for name, value in options.items() for part in (f"--{name}", value)))
+    # If just these are there, made by this very code, it leaves them.
+    _draw("views", views, *(part for name, value in options.items() for part in (f"--{name}", value)))
     stage = Stage("net")
     pictures, made_by = learned.load_views(views)
     check_settings(views, made_by, options)

@@ -92,13 +92,15 @@ class Neighbours:
 class NNQL:
     """The store: an index of states and an array of values for each action; and its past.
 
-    `index` makes an empty nearest-neighbour index for states of state_size numbers (rank_index.py, kdtree.py).
+    `index` makes an empty nearest-neighbour index for states of state_size numbers (rank_index.py, kdtree.py): what has
+    add, find, query and points as a KDTree has them.
     """
 
     def __init__(self, state_size, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
         if not (0 <= alpha <= 1 and 0 <= gamma <= 1):  # NaN compares as false
             raise ValueError(f"alpha, gamma: expected numbers from 0 to 1, found {alpha} and {gamma}")
         self.k, self.alpha, self.gamma = check_count("k", k, 1), alpha, gamma
+        n_actions = check_count("n_actions", n_actions, 1)
         # CHOICE: neighbours of a pair are pairs of the same action; the paper's N(s, a) could hold others, too.
         self.index = [index(state_size) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]

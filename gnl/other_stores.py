@@ -65,9 +65,10 @@ class Shrunk(NNQL):
 
 
 class BruteForce:
-    """Exact nearest neighbours for any vectors, all distances at once: an index for a few thousand of them.
+    """Nearest neighbours for any vectors, all distances at once: an index for a few thousand of them.
 
-    In 64 bits: in 32, rounding alone would part a state from itself by more than nnql.SAME.
+    Exact but where rounding cannot tell two neighbours apart. In 64 bits: in 32, rounding alone would part a state from
+    itself by more than nnql.SAME.
     """
 
     def __init__(self, dim):
@@ -87,6 +88,7 @@ class BruteForce:
         points, there = points.astype(float), self.points[:n_first]
         squares = (points ** 2).sum(1)[:, None] + (there ** 2).sum(1) - 2 * points @ there.T
         order = np.argsort(squares.clip(0), 1, kind="stable")[:, :k]
-        distances = np.sqrt(np.take_along_axis(squares.clip(0), order, 1))
+        # Of large numbers the squares alone would part a point from itself.
+        distances = np.linalg.norm(there[order] - points[:, None], axis=2)
         lacking = ((0, 0), (0, k - order.shape[1]))
         return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)

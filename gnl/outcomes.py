@@ -9,10 +9,14 @@ answer was right. The result of a cell holds an outcome of each method and of ea
 import numpy as np
 
 
-def outcomes(grid, record):
-    """Right or wrong after each look, as strings of 1 and 0, a character an episode."""
+def outcomes(grid, record, n_looks=0):
+    """Right or wrong after each look, as strings of 1 and 0, a character an episode.
+
+    n_looks : robots that took fewer keep to their last answer, for so many looks
+    """
     where = grid.location_of(record.answers) == grid.location_of(record.places)
-    return {"place": strings(record.correct), "location": strings(where)}
+    more = (0, 0), (0, max(0, n_looks - where.shape[1]))
+    return {"place": strings(np.pad(record.correct, more, "edge")), "location": strings(np.pad(where, more, "edge"))}
 
 
 def strings(right):

@@ -24,7 +24,7 @@ class ParticleFilter:
     """B beliefs over the poses of a home, one for each of B robots side by side.
 
     The filters share the offsets of their start and the noise of their motion: within a filter particles are
-    independent, and that is all it needs.
+    independent, and that is all it needs. They know no walls; one beyond the grid counts for the nearest cell.
     """
 
     def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES,
@@ -32,13 +32,13 @@ class ParticleFilter:
         """Guided start: particles uniform in the places that fit the first view best, weighed by how they fit.
 
         likelihood : (B, K), of each place given the first view
-        std        : of the motion noise, metres (forward and aside) and radians
+        std        : of the motion noise, two numbers: metres (along and across alike) and radians
         """
         likelihood = np.asarray(likelihood)
         if likelihood.ndim != 2:
             raise ValueError(f"likelihood: expected shape (B, K), found {likelihood.shape}")
-        if not (np.isfinite(std).all() and min(std) >= 0):
-            raise ValueError(f"std: expected finite numbers from 0 on, found {std}")
+        if np.shape(std) != (2,) or not (np.isfinite(std).all() and min(std) >= 0):
+            raise ValueError(f"std: expected two finite numbers from 0 on, found {std}")
         if min(n_particles, n_start_places) < 1:
             raise ValueError("n_particles, n_start_places: expected at least 1 of each, "
                              f"found {n_particles} and {n_start_places}")

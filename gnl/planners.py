@@ -2,8 +2,8 @@
 
 A planner is a function plan(step, states, rng) -> actions (B,): states (B, K) are the reciprocal ranks of the
 latest views, unless the episode's rules say otherwise, `rng` is the exploration stream. It answers None to end the
-episode. A planner that wants more, such as the particles, also hands a function to `episode.run` as `watch`, which is
-called before it.
+episode of all robots. A planner that wants more, such as the particles, also hands a function to `episode.run` as
+`watch`, which is called before it.
 """
 
 import itertools

@@ -61,6 +61,11 @@ def test_an_index_that_ade20k_does_not_have_is_refused(label):
         from_ade20k(np.array([[1, label]]))
 
 
+def test_indices_that_are_no_whole_numbers_are_refused():
+    with pytest.raises(ValueError, match="labels: expected whole numbers, found float64"):
+        from_ade20k(np.array([[1.0, 8.0]]))
+
+
 def lab(colours, eye):
     """CIELAB of sRGB colours (n, 3) in 0..255 as an eye sees them."""
     c = colours / 255

@@ -205,6 +205,35 @@ def test_many_episodes_say_how_far_they_are_and_how_many_were_right_in_the_end(m
     assert 0 < right.mean() < 1
 
 
+def test_who_ends_some_groups_of_robots_sooner_than_others_is_told(monkeypatch):
+    monkeypatch.setattr(episode, "SIDE_BY_SIDE", 3)
+    ends = iter([1, 2])
+
+    def plan(step, states, _rng):
+        plan.end = next(ends) if step == 0 else plan.end
+        return None if step == plan.end else np.zeros(len(states), int)
+
+    with pytest.raises(ValueError, match=r"plan: expected to end all groups .* as many looks, found \[2, 3\]"):
+        run_all(Sense(knows), Glide(), GRID, plan, starts(6), 0)
+
+
+def test_a_planner_may_use_its_own_array_again():
+    mine = np.zeros(2, int)
+
+    def plan(step, _states, _rng):
+        mine[:] = step % 3
+        return mine
+
+    record = run(Sense(knows), Glide(), GRID, plan, starts(2), 0)
+    np.testing.assert_array_equal(record.actions, [[0, 1, 2, 0]] * 2)
+
+
+@pytest.mark.parametrize("shape", [(3, K), (2, K - 1), (2,)], ids=str)
+def test_scores_of_other_views_or_places_are_refused(shape):
+    with pytest.raises(ValueError, match=rf"scores: expected shape \(2, {K}\), found \({shape[0]}"):
+        run(Sense(lambda poses: np.zeros(shape)), Glide(), GRID, planners.chance, starts(2), 0)
+
+
 def test_the_likelihood_is_a_probability_and_a_floor_below_it():
     found = probability(np.array([[0.0, 0, 0, 500]]))
     np.testing.assert_allclose(found, [[1e-3, 1e-3, 1e-3, 1.001]], rtol=1e-6)

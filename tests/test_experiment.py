@@ -11,7 +11,7 @@ import pytest
 from data_gen.rooms import make_home
 from data_gen.starts import starts_of
 from gnl import episode, experiment, planners
-from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, run_cell, to_bytes
+from gnl.experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, made_from, run_cell, to_bytes
 from gnl.gcn import GCN
 from gnl.learned import digest, fingerprint
 from gnl.options import Options
@@ -69,6 +69,13 @@ def test_a_classifier_may_be_anything_with_scores(parts, lived):
     assert {**of_another, "made from": 0} == {**lived[0], "made from": 0}
 
 
+def test_a_cell_knows_a_classifier_without_parameters_by_its_kind(parts):
+    senses = parts[0]
+    kinds = [type(name, (), {"params": params})() for name, params in (("Bag", {}), ("Nearest", None), ("Nearest", {}))]
+    assert [made_from(replace(senses, gcn=kind))["gcn"] for kind in kinds] == ["Bag", "Nearest", "Nearest"]
+    assert made_from(senses)["gcn"] == fingerprint(senses.gcn.params)
+
+
 def test_another_seed_is_another_cell(parts, lived):
     assert live(Cell(800, 0.2, 10, 4), parts)[0]["tests"] != lived[0]["tests"]
 
@@ -90,12 +97,13 @@ def test_equal_actions_have_equal_outcomes_so_pairs_are_pairs(parts, lived):
 
 
 def test_what_is_learned_never_comes_from_a_test_nor_a_choice_from_a_test_or_its_luck(parts, lived):
-    starts, given = parts[1], lived[2]
+    starts, (result, _, given, _) = parts[1], lived
     np.testing.assert_array_equal(given["train_nnql"][0][0], starts["training"])
     np.testing.assert_array_equal(given["race"][0][0], starts["training"])
-    tests, known, validation = np.split(np.array(given["run_all"], object), [3 + N_CHECKPOINTS, 6 + N_CHECKPOINTS])
-    assert all(np.array_equal(poses, starts["tests"]) for poses, _ in tests)
-    assert all(np.array_equal(poses, starts["validation"]) for poses, _ in validation)
+    tests, validation = ([call for call in given["run_all"] if np.array_equal(call[0], starts[name])]
+                         for name in ("tests", "validation"))
+    known = given["run_all"][len(tests):-len(validation)]
+    assert (len(tests), len(known), len(validation)) == (len(result["tests"]) + N_CHECKPOINTS, 3, N_CHECKPOINTS)
     luck = [{seed.spawn_key for _, seed in calls}
             for calls in (given["train_nnql"], given["race"], tests, known, validation)]
     assert [len(of) for of in luck] == [1, 1, 1, 1, 1]  # all tests have the same luck
@@ -118,7 +126,7 @@ def test_what_was_learned_by_heart_is_asked_from_starts_of_training_with_luck_of
 
 
 def test_what_was_learned_by_heart_is_asked_from_the_first_start_to_the_last_evenly_spread(parts, lived):
-    training, (known, _) = parts[1]["training"], lived[2]["run_all"][3 + N_CHECKPOINTS]
+    training, (known, _) = parts[1]["training"], lived[2]["run_all"][-N_CHECKPOINTS - 1]
     which = (known[:, None] == training).all(2).argmax(1)
     assert (which[0], which[-1]) == (0, N_TRAINING - 1)
     assert np.ptp(np.diff(which)) <= 1

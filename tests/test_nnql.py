@@ -241,6 +241,12 @@ def test_no_neighbours_are_refused():
         NNQL(K, A, k=0)
 
 
+@pytest.mark.parametrize("n_actions", [0, -1, 2.0])
+def test_a_store_of_no_actions_is_refused(n_actions):
+    with pytest.raises(ValueError, match="n_actions: expected a whole number from 1 "):
+        NNQL(K, n_actions)
+
+
 @pytest.mark.parametrize("how", [{"alpha": np.nan}, {"alpha": -3}, {"gamma": 7}, {"gamma": np.nan}], ids=str)
 def test_rates_that_cannot_be_are_refused(how):
     with pytest.raises(ValueError, match="alpha, gamma: expected numbers from 0 to 1, found "):

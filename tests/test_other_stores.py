@@ -82,6 +82,14 @@ def test_brute_force_finds_states_of_all_kinds_again():
     assert [brute.find(state[None])[0] for state in states] == list(range(100))
 
 
+def test_brute_force_finds_states_of_large_numbers_again():
+    states = np.random.default_rng(0).uniform(0, 30, (700, 300)).astype(np.float32)
+    index = BruteForce(300)
+    index.add(states)
+    np.testing.assert_array_equal(index.find(states), np.arange(700))
+    np.testing.assert_array_equal(index.query(states, 1)[0], 0)
+
+
 def test_brute_force_answers_like_the_tree():
     rng, brute, tree = np.random.default_rng(0), BruteForce(5), KDTree(5)
     points = rng.random((40, 5), np.float32)

@@ -29,6 +29,14 @@ def test_a_right_place_with_a_wrong_bearing_is_a_right_location():
     assert outcomes(grid, record) == {"place": ["101", "010"], "location": ["101", "110"]}
 
 
+def test_who_looks_no_further_keeps_to_his_last_answer():
+    grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
+    answers, places = np.array([[5, 5], [5, 17]]), np.array([[5, 6], [17, 17]])
+    record = SimpleNamespace(answers=answers, places=places, correct=answers == places)
+    assert outcomes(grid, record, 4) == {"place": ["10", "01", "01", "01"], "location": ["10", "11", "11", "11"]}
+    assert outcomes(grid, record, 1) == outcomes(grid, record)
+
+
 def test_strings_and_arrays_are_each_others_inverse():
     rng = np.random.default_rng(0)
     there = rng.random((7, 5)) < 0.5

@@ -268,9 +268,10 @@ def life(likelihood, seed, resample):
     return state(belief)
 
 
-@pytest.mark.parametrize("std", [(np.nan, 0.03), (0.03, np.inf), (-0.1, 0)], ids=str)
+@pytest.mark.parametrize("std", [(np.nan, 0.03), (0.03, np.inf), (-0.1, 0), (0.1, 0.1, 0.1), (0.1,), 0.1],
+                         ids=str)
 def test_motion_noise_that_cannot_be_is_refused(std):
-    with pytest.raises(ValueError, match="std: expected finite numbers from 0 on, found "):
+    with pytest.raises(ValueError, match="std: expected two finite numbers from 0 on, found "):
         new_filter(std=std)
 
 
