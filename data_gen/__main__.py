@@ -1,4 +1,4 @@
-"""python -m data_gen: write homes and training views to files, for `python -m gnl` to learn from."""
+"""python -m data_gen: write homes, training views and start poses to files, for `python -m gnl` to learn from."""
 
 from gnl.terminal import command_line
 

@@ -18,11 +18,13 @@ from gnl.files import check_folder, load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
 from gnl.gaps import poses_beyond
-from gnl.learned import digest
+from gnl.learned import code, digest
 from gnl.terminal import Stage, processes
 from gnl.world import World
 
 from .rooms import make_home
+
+MODULES = "box", "furnish", "furniture", "layout", "rooms", "starts"  # that decide where one starts
 
 
 def add_arguments(parser):
@@ -40,6 +42,7 @@ def add_arguments(parser):
 def run(args):
     """Homes and start poses of cells of Table I, of those that lack one or the other."""
     sizes = {"training": args.training, "tests": args.tests, "validation": args.validation}
+    made_by = sizes | {"code": digest([code(), code(modules=["gaps"]), code(Path(__file__).parent, MODULES)])}
     for name, size in (*sizes.items(), ("jobs", args.jobs)):
         if size < 1:
             raise ValueError(f"--{name}: expected at least 1, found {size}")
@@ -48,7 +51,7 @@ def run(args):
     files = {cell: folder / f"starts-{cell.name}.npz" for cell in cells}
     plans = {cell.world: folder / f"home-{cell.world}.json" for cell in cells}
     todo = [cell for cell, path in files.items()
-            if not (plans[cell.world].exists() and path.exists() and load_arrays(path)[1] == sizes
+            if not (plans[cell.world].exists() and path.exists() and load_arrays(path)[1] == made_by
                     and (path.with_suffix(".png").exists() or not args.picture))]
     if not todo:
         return
@@ -61,7 +64,7 @@ def run(args):
     with processes(args.jobs) as pool:
         drawn = [pool.submit(starts_of, cell, homes[cell.world], *sizes.values()) for cell in todo]
         for i, (cell, poses) in enumerate(zip(todo, drawn, strict=True)):
-            save_arrays(files[cell], sizes, **poses.result())
+            save_arrays(files[cell], made_by, **poses.result())
             if args.picture:
                 save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
             stage((i + 1) / len(todo))
@@ -71,15 +74,16 @@ def run(args):
 def cell_of(words):
     """The Cell of `--cell WORLD M DEG SEED`."""
     try:
-        cell = Cell(*(kind(word) for kind, word in zip((int, float, int, int), words, strict=True)))
+        world, t_xy_m, *others = (kind(word) for kind, word in zip((int, float, int, int), words, strict=True))
+        cell = Cell(world, t_xy_m + 0.0, *others)  # -0.0 is 0
         in_its_name = float(f"{cell.t_xy_m:g}")
-        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m == in_its_name < LARGEST_HOME_M):
+        if not (min(cell.world, cell.t_theta_deg, cell.seed) >= 0 and 0 <= cell.t_xy_m == in_its_name):
             raise ValueError
     except ValueError:
         raise ValueError("--cell: expected WORLD M DEG SEED as in 800 0.2 10 0, M of at most six digits, "
                          f"found {' '.join(words)}") from None
-    if cell.t_theta_deg >= 180:
-        raise ValueError(f"--cell: expected DEG below 180, found {cell.t_theta_deg}")
+    if cell.t_xy_m >= LARGEST_HOME_M or cell.t_theta_deg >= 180:
+        raise ValueError(f"--cell: expected M below {LARGEST_HOME_M:g} and DEG below 180, found {' '.join(words)}")
     return cell
 
 

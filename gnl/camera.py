@@ -47,7 +47,7 @@ class Surfaces:
 def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
     """First-person views and their true labels: poses (B, 3) -> rgb (n, H, H, 3) uint8, labels (n, H, H) uint8.
 
-    size   : H; 64 gives the same view at an eighth of the resolution
+    size   : H; 64 gives the same view at an eighth of the resolution (of up to 8 at once: more are drawn in parts)
     noise  : appearance noise of the photograph (see photo.py); 0 is a clean drawing
     wanted : (B,) bool, whose views to draw: n of them, each as it would be among all B; all B if not given
     """

@@ -45,7 +45,7 @@ def check_folder(option, path):
     """ValueError if there is a file where a folder will be, no name for it, or no right to write there."""
     if not str(path):
         raise ValueError(f"{option}: expected a folder, found no name")
-    there = next(part for part in (Path(path), *Path(path).absolute().parents) if part.exists())
+    there = next(part for part in (Path(path), *Path(path).parents) if part.exists())
     if not there.is_dir():
         raise ValueError(f"{option}: expected a folder, found the file {there}")
     if not os.access(there, os.W_OK | os.X_OK):

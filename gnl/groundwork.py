@@ -25,11 +25,10 @@ def prepare(out, settings, cells, jobs, pool):
     """
     worlds = sorted({cell.world for cell in cells})
     homes = {world: out / "data" / f"home-{world}.json" for world in worlds}
-    lacking = [cell for cell in cells if not (homes[cell.world].exists() and starts_path(out, cell).exists())]
-    if lacking:
-        names = [part for cell in lacking for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
-        _draw("starts", out / "data", *names, "--training", settings.episodes, "--tests", settings.tests,
-              "--validation", settings.validation, "--jobs", jobs)
+    # If just these are there, made by this very code, data_gen leaves them; so with the views.
+    names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
+    _draw("starts", out / "data", *names, "--training", settings.episodes, "--tests", settings.tests,
+          "--validation", settings.validation, "--jobs", jobs)
     net, stage = taught_net(out, settings), Stage("gcn")
     senses = {world: Senses(_load_home(homes[world], world), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}
@@ -43,7 +42,6 @@ def taught_net(out, settings, **others):
     """The segmentation net; `others` are other options of `python -m data_gen views`, for another net than ours."""
     options = {"homes": settings.net_homes, "views": settings.net_views, "noise": settings.noise, **others}
     views = out / "data" / ("views" + "".join(f"-{name}-{value}" for name, value in others.items()) + ".npz")
-    # If just these are there, made by this very code, it leaves them.
     _draw("views", views, *(part for name, value in options.items() for part in (f"--{name}", value)))
     stage = Stage("net")
     pictures, made_by = learned.load_views(views)

@@ -68,6 +68,12 @@ def test_another_net_learns_from_views_of_its_own(tmp_path, asked):
         groundwork.taught_net(tmp_path, SETTINGS, noise=0.5, kinds=1)
 
 
+def test_starts_that_are_there_are_asked_for_too(tmp_path, asked):
+    for _ in range(2):
+        next(groundwork.prepare(tmp_path, SETTINGS, [Cell(800, 1.0, 90, 3)], 2, "pool"))
+    assert [kind for kind, *_ in asked.drawn] == ["starts", "views"] * 2
+
+
 def test_views_that_are_there_are_asked_for_too_as_they_may_be_of_older_code(tmp_path, asked):
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "views.npz").touch()

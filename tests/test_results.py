@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from data_gen.rooms import make_home
 from gnl.__main__ import main
+from gnl.learned import digest
 from gnl.table import GAPS, WORLDS
 
 ROOT = Path(__file__).parents[1]
@@ -40,6 +42,14 @@ def test_every_cell_of_the_paper_is_there_at_its_scale():
     for of in cells:
         assert (of["settings"]["episodes"], of["settings"]["tests"], len(of["checkpoints"])) == (10_000, 100, 10)
         assert {len(look) for outcome in of["tests"].values() for look in outcome["place"]} == {100}
+
+
+@pytest.mark.parametrize("folder", [RESULTS, RESULTS / "seed1"], ids=lambda folder: folder.name)
+def test_the_cells_are_of_the_homes_that_are_drawn_today(folder):
+    homes = {world: digest(make_home(world).plan) for world in WORLDS}
+    cells = [json.loads(path.read_bytes()) for path in folder.glob("cells/*.json")]
+    assert len(cells) == 75
+    assert {(of["cell"]["world"], of["made from"]["home"]) for of in cells} == set(homes.items())
 
 
 def test_the_report_is_what_the_cells_say(tmp_path):

@@ -40,7 +40,7 @@ def load(path):
 runner = load(TUTORIALS / "run.py")
 grader = load(TUTORIALS / "exercises" / "grader.py")
 CHAPTERS = runner.chapters()
-PAGES = [ROOT / "README.md", *sorted(TUTORIALS.glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted(TUTORIALS.glob("**/*.md"))]
 EXERCISES = sorted((TUTORIALS / "exercises").glob("ex_*.py"))
 
 
@@ -88,6 +88,15 @@ def test_a_fence_that_prints_what_nobody_wrote_down_passes_and_an_output_belongs
                               "```text\n2\n```\n\n```text\nno output\n```\n"), tmp_path)
 
 
+@pytest.mark.parametrize("fence", [
+    "```python title=x\n1 / 0\n```\n", "```python \n1 / 0\n```\n", "  ```python\n  1 / 0\n  ```\n",
+    "```c++\n1 / 0;\n```\n\n```python\n1 / 0\n```\n", "  ```text\n  2\n  ```\n"])
+def test_a_fence_that_would_not_be_run_is_told(tmp_path, fence):
+    with pytest.raises(ValueError, match="expected fences of one word or none, those to be run not indented, found "):
+        runner.run(page(tmp_path, fence), tmp_path)
+    runner.run(page(tmp_path, "  ```\n  w w d\n  ```\n"), tmp_path)
+
+
 def test_a_page_runs_in_its_folder_and_leaves_the_current_one_as_it_was(tmp_path):
     before = Path.cwd()
     runner.run(page(tmp_path, "```python\nopen('here', 'w').close()\n```\n"), tmp_path)
@@ -130,6 +139,7 @@ def test_a_chapter_runs_says_what_it_prints_and_draws_its_figures(chapter, tmp_p
             assert one.size == other.size
             difference = np.asarray(one.convert("RGB"), float) - np.asarray(other.convert("RGB"), float)
         assert abs(difference).mean() < 1, f"{name} is no longer what the chapter draws"
+        assert (abs(difference).max(2) > 64).mean() < 0.002, f"{name} is no longer what the chapter draws"
 
 
 @pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda path: path.stem)

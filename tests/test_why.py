@@ -4,9 +4,17 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import room
+
+from gnl import learned
+from gnl.scene_graph import scene_graph
+from gnl.senses import Senses
+from gnl.table import Settings
+from gnl.world import World
 
 RESULTS = Path(__file__).parents[1] / "tutorials" / "results"
 PROGRAMS = sorted(path.stem for path in (RESULTS / "why").glob("*.py") if path.stem != "cells_again")
@@ -86,6 +94,54 @@ def test_what_was_lived_with_another_reward_is_the_same_but_for_the_reward(progr
         np.testing.assert_array_equal(one, two)
     assert len(other.rewards) == 2
     np.testing.assert_array_equal(other.rewards[-1], look["belief"])
+
+
+def test_without_edges_the_words_stay_and_no_word_has_a_neighbour(program):
+    graphs = scene_graph(np.random.default_rng(0).integers(3, size=(4, 16, 16)) // 2)
+    bare = program("edges").without_edges(graphs)
+    assert len(graphs.edges) > 0
+    assert len(bare.edges) == 0
+    for one, two in zip(bare, graphs, strict=True):
+        np.testing.assert_array_equal(one.words, two.words)
+
+
+def test_with_true_labels_there_is_no_net_and_a_classifier_of_its_own(program):
+    home, settings = World(room(size=(4.0, 4.0))), Settings(gcn_views=40, gcn_epochs=2)
+    before = Senses(home, {"a net": 1}, "a classifier", 0.5)
+    after = program("right_labels").with_true_labels(before, settings)
+    assert (after.net, after.world, after.noise) == (None, home, 0.5)
+    again = program("right_labels").with_true_labels(Senses(home, None, None, 0.5), settings)
+    assert learned.fingerprint(after.gcn.params) == learned.fingerprint(again.gcn.params)
+
+
+def test_among_turns_the_better_turn_is_chosen_though_going_forward_were_better_still(program):
+    store = SimpleNamespace(q_values=lambda _: np.array([[1.0, 2, 9], [3, 2, 9]]))
+    assert program("one_habit").among_turns(store)(0, None, np.random.default_rng(0)).tolist() == [1, 0]
+
+
+def test_in_pairs_an_option_is_worth_the_belief_that_it_left_near_such_a_view(program, monkeypatch):
+    ours_plus, views = program("ours_plus"), np.float32([[1, 0.5], [0.5, 1]])
+    worth = np.array([[0.1, 0.2, 0.3], [0.6, 0.5, 0.4]])  # of each start, each action
+
+    def run_all(_senses, _robot, _grid, plan, starts, seed, watch):
+        assert (starts, seed) == ("starts", 7)
+        watch(step=0, states=views)
+        action = plan(0, views, None)[0]
+        return SimpleNamespace(belief=np.stack([[9.0, 9.0], worth[:, action]], 1))
+
+    monkeypatch.setattr(ours_plus.episode, "run_all", run_all)
+    monkeypatch.setattr(ours_plus.options, "K_NEIGHBOURS", 1)
+    options = ours_plus.InPairs(("senses", "robot", "grid"), "starts", 7)
+    np.testing.assert_allclose(options.q_values(views[::-1]), worth[::-1])
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_takes_no_options_and_begins_nothing(tmp_path, name):
+    done = subprocess.run([sys.executable, RESULTS / "why" / f"{name}.py", "--help"], cwd=tmp_path,
+                          capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"{name}.py: expected no options, found --help (the head of the file tells more)\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_where_the_table_should_be_is_one_line(tmp_path):

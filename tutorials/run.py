@@ -16,11 +16,15 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+STRAY = re.compile(r"^```.*|^ +```(python|text).*", re.MULTILINE)  # what is left of fences that FENCE does not match
 
 
 def run(page, folder=HERE):
     """Run a page in a folder; ValueError at the first output that is not what is written."""
     text, namespace, printed = Path(page).read_text(encoding="utf-8"), {"__name__": "__main__"}, None
+    if stray := STRAY.search(FENCE.sub("", text)):
+        raise ValueError(f"{page}: expected fences of one word or none, those to be run not indented, "
+                         f"found {stray[0]!r}")
     before = os.getcwd()
     os.chdir(folder)
     try:

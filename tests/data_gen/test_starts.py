@@ -9,7 +9,7 @@ from PIL import Image
 from data_gen import starts as starts_module
 from data_gen.__main__ import main
 from data_gen.rooms import make_home
-from data_gen.starts import draw_starts, starts_of
+from data_gen.starts import cell_of, draw_starts, starts_of
 from gnl import gaps
 from gnl.canvas import BELIEF, ROBOT
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
@@ -162,11 +162,32 @@ def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_turn_of_half_a_circle_or_more_is_no_gap(tmp_path, capsys):
+@pytest.mark.parametrize("words", ["800 0.2 180 0", "800 200 10 0", "800 5000 10 0"])
+def test_a_gap_wider_than_homes_or_half_a_circle_is_one_line(tmp_path, capsys, words):
     with pytest.raises(SystemExit) as exit:
-        main(["starts", str(tmp_path / "out"), "--cell", "800", "0.2", "180", "0"])
+        main(["starts", str(tmp_path / "out"), "--cell", *words.split()])
     assert exit.value.code == 2
-    assert capsys.readouterr().err == "python -m data_gen: --cell: expected DEG below 180, found 180\n"
+    said = capsys.readouterr().err
+    assert said == f"python -m data_gen: --cell: expected M below 200 and DEG below 180, found {words}\n"
+
+
+def test_no_gap_has_one_name():
+    assert cell_of(["800", "-0.0", "0", "0"]).name == cell_of(["800", "0", "0", "0"]).name == "800-0m-0deg-seed0"
+
+
+def test_starts_of_other_code_are_drawn_anew(tmp_path, monkeypatch):
+    def written():
+        with pytest.raises(SystemExit) as exit:
+            main(["starts", str(tmp_path), "--cell", "800", "0.2", "10", "0", "--training", "5", "--tests", "4"])
+        assert exit.value.code == 0
+        path, = tmp_path.glob("starts-*.npz")
+        return path.stat().st_mtime_ns, load_arrays(path)[0]["training"].tolist()
+
+    first, again = written(), written()
+    assert first == again
+    monkeypatch.setattr(starts_module, "code", lambda *_, **__: "other")
+    assert written()[0] > first[0]
+    assert written()[1] == first[1]
 
 
 def test_cells_have_starts_in_their_own_homes_as_many_as_were_asked_for_whatever_was_there(tmp_path):

@@ -5,6 +5,7 @@ as the table would, and kept. What was measured is lost if a program is stopped.
 """
 
 import os
+import sys
 from functools import partial
 from itertools import repeat
 from pathlib import Path
@@ -15,7 +16,7 @@ from gnl.paper import WORLDS
 from gnl.places import PlaceGrid
 from gnl.robot import Robot
 from gnl.table import Settings
-from gnl.terminal import Stage, processes
+from gnl.terminal import Stage, guarded, processes
 
 SIX = [Cell(world, t_xy_m, t_theta_deg, 0) for world in WORLDS for t_xy_m, t_theta_deg in ((0.2, 10), (1.0, 90))]
 
@@ -43,6 +44,16 @@ def in_cells(measure, cells=SIX, settings=None, out="out/table", retaught=None):
 def _in_cell(measure, i, senses, starts):
     """The same in one cell, in the process that measures."""
     return measure(i, (senses, Robot(senses.world), PlaceGrid(senses.world)), starts)
+
+
+def run(main):
+    """main() as a program, which takes no options."""
+    def alone():
+        if sys.argv[1:]:
+            raise ValueError(f"expected no options, found {' '.join(sys.argv[1:])} (the head of the file tells more)")
+        main()
+
+    guarded(Path(sys.argv[0]).name, alone)
 
 
 def undone(actions):

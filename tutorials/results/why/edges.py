@@ -10,12 +10,11 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from cells_again import SIX, in_cells
+from cells_again import SIX, in_cells, run
 
 from gnl import gcn
 from gnl.compare import in_points, paired_difference
 from gnl.table import Settings
-from gnl.terminal import guarded
 
 HOMES = SIX[::2]  # one cell of each home
 NEW = 3000
@@ -50,4 +49,4 @@ def main(cells=HOMES, settings=None, **where):
 
 
 if __name__ == "__main__":
-    guarded("edges.py", main)
+    run(main)

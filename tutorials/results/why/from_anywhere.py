@@ -9,13 +9,12 @@ MV does. Of both: how often they choose alike in new views, and how often action
 """
 
 import numpy as np
-from cells_again import SIX, in_cells, undone
+from cells_again import SIX, in_cells, run, undone
 
 from gnl import episode, planners
 from gnl.compare import paired_difference
 from gnl.ranks import reciprocal_ranks
 from gnl.robot import LEFT, N_ACTIONS, RIGHT
-from gnl.terminal import guarded
 
 TIMES = 10
 
@@ -50,4 +49,4 @@ def main(cells=SIX, **where):
 
 
 if __name__ == "__main__":
-    guarded("from_anywhere.py", main)
+    run(main)

@@ -14,7 +14,7 @@ deviation), and how alike two trainings are in it (correlation).
 """
 
 import numpy as np
-from cells_again import SIX, in_cells
+from cells_again import SIX, in_cells, run
 
 from gnl import episode, planners
 from gnl.compare import in_points, paired_difference
@@ -22,7 +22,6 @@ from gnl.episode import LENGTH
 from gnl.nnql import NNQL
 from gnl.ranks import reciprocal_ranks
 from gnl.robot import FORWARD, LEFT, N_ACTIONS, RIGHT
-from gnl.terminal import guarded
 
 
 def turns(_step, states, rng):
@@ -88,4 +87,4 @@ def main(cells=SIX, **where):
 
 
 if __name__ == "__main__":
-    guarded("one_habit.py", main)
+    run(main)

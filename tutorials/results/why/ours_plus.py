@@ -14,7 +14,7 @@ Prints by how much each plan is ahead of Scan and of Ours+, and how often an act
 """
 
 import numpy as np
-from cells_again import SIX, in_cells, undone
+from cells_again import SIX, in_cells, run, undone
 
 from gnl import episode, options, planners
 from gnl.choices import with_context
@@ -23,7 +23,6 @@ from gnl.episode import LENGTH
 from gnl.experiment import RACE_STARTS
 from gnl.other_stores import Shrunk
 from gnl.robot import N_ACTIONS
-from gnl.terminal import guarded
 
 TIMES = 10  # each start of the tests is tested so often; the mean counts
 
@@ -107,4 +106,4 @@ def main(cells=SIX, **where):
 
 
 if __name__ == "__main__":
-    guarded("ours_plus.py", main)
+    run(main)

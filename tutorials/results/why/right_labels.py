@@ -8,14 +8,13 @@ Prints what SV and MV get right, Ours - MV with its interval over the cells, and
 from dataclasses import replace
 
 import numpy as np
-from cells_again import in_cells
+from cells_again import in_cells, run
 
 from gnl import episode, learned, planners
 from gnl.compare import over_cells
 from gnl.experiment import GAPS_DEG, GAPS_M, Cell
 from gnl.paper import WORLDS
 from gnl.places import PlaceGrid
-from gnl.terminal import guarded
 
 ALL = [Cell(world, m, deg, 0) for world in WORLDS for m in GAPS_M for deg in GAPS_DEG]
 TIMES = 10  # each start is tested so often
@@ -48,4 +47,4 @@ def main(cells=ALL, **where):
 
 
 if __name__ == "__main__":
-    guarded("right_labels.py", main)
+    run(main)
