@@ -118,6 +118,18 @@ def test_a_file_whose_checkpoints_were_shortened_together_is_refused(tmp_path):
         NNQL.load(tmp_path / "nnql.npz")
 
 
+def test_a_file_with_more_changes_than_its_checkpoints_count_is_refused(tmp_path):
+    store = lived(5)
+    store.checkpoint()
+    store.save(tmp_path / "nnql.npz", "a test")
+    arrays, made_by = load_arrays(tmp_path / "nnql.npz")
+    longer = {name: np.append(arrays[name], arrays[name][:1]) for name in ("changed0", "changed_to0")}
+    save_arrays(tmp_path / "nnql.npz", made_by, **arrays | longer)
+    n = len(arrays["changed0"])
+    with pytest.raises(ValueError, match=f"found another one .{n} changes counted, {n + 1} and {n + 1} there"):
+        NNQL.load(tmp_path / "nnql.npz")
+
+
 def test_a_checkpoint_without_news_logs_nothing():
     store = lived(5)
     store.checkpoint()

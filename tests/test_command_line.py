@@ -306,6 +306,12 @@ def test_a_picture_has_the_name_of_a_picture(tmp_path, capsys, name):
     assert (tmp_path / "LICENSE").read_text() == "MIT"
 
 
+def test_the_name_of_a_picture_may_end_in_capitals(tmp_path):
+    assert run("graph", write(tmp_path / "view.png"), "--out", tmp_path / "GRAPH.PNG") == 0
+    with Image.open(tmp_path / "GRAPH.PNG") as picture:
+        assert picture.format == "PNG"
+
+
 def test_a_python_without_what_gnl_needs_is_told_in_one_line(tmp_path):
     (tmp_path / "numpy.py").write_text("raise ModuleNotFoundError('No module', name='numpy')")
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from gnl.__main__ import main; main(['graph', 'a.png'])"

@@ -66,6 +66,27 @@ def test_a_petal_points_to_the_bearings_of_its_place(world, grid):
     assert sum(colour_at(plan.picture(), plan.at(middle - ahead))) > 3 * 220
 
 
+def test_places_with_hardly_any_belief_have_no_petal_and_the_more_belief_the_darker(world, grid, monkeypatch):
+    petals, pooled = [], np.zeros(grid.n_places)
+    pooled[[5, 20, 30, 40]] = 0.001, 0.01, 0.1, 0.8
+    plan = floor_map.Map(world, 640, grid=grid)
+    monkeypatch.setattr(canvas.Canvas, "polygon", lambda _, points, *how: petals.append((points, how[0])))
+    plan.belief(pooled)
+    violet = [(points, colour[3]) for points, colour in petals if colour[:3] == canvas.BELIEF]
+    np.testing.assert_array_equal([points for points, _ in violet], [plan.petal(place) for place in (20, 30, 40)])
+    shades = [shade for _, shade in violet]
+    assert 30 < shades[0] < shades[1] < shades[2] < 256
+
+
+def test_rooms_of_one_type_have_one_tint_and_others_another():
+    rooms = [{"type": kind, "polygon": [[x, 0], [x + 2, 0], [x + 2, 4], [x, 4]]}
+             for x, kind in ((0, "bath"), (2, "kitchen"), (4, "bath"))]
+    plan = floor_map.Map(World(room(rooms=rooms)), 640)
+    bath, kitchen, other_bath = (colour_at(plan.picture(), plan.at([x, 0.7])) for x in (1, 3, 5))
+    assert bath == other_bath != kitchen
+    assert {bath, kitchen} <= {*canvas.TINTS}
+
+
 def test_a_robot_sees_as_far_as_the_wall_and_not_behind_itself(world):
     plan = floor_map.Map(world, 640)
     before = plan.picture()
@@ -82,6 +103,17 @@ def test_more_weight_is_more_dots(world, grid):
     plan.particles((x, y, np.zeros(100), weight), n=20)
     assert colour_at(plan.picture(), plan.at([1, 2])) != colour_at(before, plan.at([1, 2]))
     assert colour_at(plan.picture(), plan.at([5, 2])) == colour_at(before, plan.at([5, 2]))
+
+
+def test_particles_are_shown_as_often_as_they_weigh(world, monkeypatch):
+    """The first weighs a hundredth of all, the second a half."""
+    plan, dots = floor_map.Map(world, 640), []
+    monkeypatch.setattr(canvas.Canvas, "disc", lambda _, middle, *how: dots.append(middle))
+    x, weight = np.array([1.0, 2.0, 3.0]), np.array([0.02, 1.0, 0.98])
+    for n, shown in ((10, [0, 5, 5]), (100, [1, 50, 49])):
+        dots.clear()
+        plan.particles((x, np.full(3, 2.0), np.zeros(3), weight), n=n)
+        assert [int(np.isclose(np.array(dots)[:, 0], plan.at([one, 2])[0]).sum()) for one in x] == shown
 
 
 def test_a_copied_map_is_a_sheet_of_its_own(world):

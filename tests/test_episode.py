@@ -139,6 +139,33 @@ def test_what_a_planner_draws_changes_neither_views_nor_motion_nor_filter():
     assert_equal(one, other)
 
 
+def test_appearance_motion_filter_and_exploration_are_the_seeds_four_children_in_this_order():
+    met = {}
+
+    class Seeing(Sense):
+        def scores(self, poses, rng):
+            met["appearance"] = rng
+            return self.score(poses)
+
+    class Moving(Glide):
+        def step(self, poses, actions, rng):
+            met["motion"] = rng
+            return super().step(poses, actions, rng)
+
+    def filtering(grid, likelihood, rng):
+        met["filter"] = rng
+        return ParticleFilter(grid, likelihood, rng)
+
+    def plan(step, states, rng):
+        met["exploration"] = rng
+        return np.zeros(len(states), int)
+
+    run(Seeing(knows), Moving(), GRID, plan, starts(2), 7, Rules(length=1, filter=filtering))
+    children = {name: rng.bit_generator.seed_seq for name, rng in met.items()}
+    assert {name: (child.entropy, child.spawn_key) for name, child in children.items()} == {
+        "appearance": (7, (0,)), "motion": (7, (1,)), "filter": (7, (2,)), "exploration": (7, (3,))}
+
+
 def test_another_seed_is_another_run():
     a, again, b = (run(Sense(knows), Glide(), GRID, planners.chance, starts(9), seed) for seed in (0, 0, 1))
     assert_equal(a, again)

@@ -68,6 +68,14 @@ def test_a_ball_stays_out_of_a_narrow_gap_and_rolls_in_by_a_wide_one():
     assert with_gap(1.5).inside([[1.5, 2], [4.5, 2]]).tolist() == [False, True]
 
 
+@pytest.mark.parametrize(("width", "closed"), [(1.1, True), (1.3, False)])
+def test_the_ball_is_as_wide_as_is_said(width, closed):
+    """A room with a gap in its west wall: 1.2 m wide is the ball, up to the raster."""
+    space = walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 0, 0, 2 - width / 2), (0, 2 + width / 2, 0, 4),
+                   (3, 0, 3, 4))
+    assert space.inside([[1.5, 2], [4.5, 2]]).tolist() == [closed, True]
+
+
 def test_a_home_without_a_side_is_inside_up_to_its_bounds():
     space = walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4))
     assert space.inside([[0.1, 2], [5, 2], [-0.2, 2], [3, 4.2]]).tolist() == [True, True, False, False]

@@ -199,6 +199,41 @@ def test_what_is_seen_from_a_pose_is_learnt_as_the_place_of_that_pose(parts, mon
     assert helper.given == helped
 
 
+def test_the_helper_and_who_is_helped_see_with_noise_of_their_own(parts, monkeypatch):
+    """And neither with the numbers that the poses were made of."""
+    senses, grid, helper = parts
+    look_around, drawn = senses.look_around, [np.random.default_rng(5).random(2000)]
+
+    def draw_and_look(poses, rng, stage=None):
+        drawn.append(rng.random(1000))
+        return look_around(poses, rng, stage)
+
+    monkeypatch.setattr(senses, "look_around", draw_and_look)
+    monkeypatch.setattr(gcn, "train", lambda *_, **how: None)
+    learned.learn_places(senses, grid, 9, 5, helper, draw=lambda n, rng: rng.random((2000, 3))[:n] + 1)
+    assert len(drawn) == 3
+    assert len(np.unique(np.concatenate(drawn))) == 4000
+
+
+@pytest.mark.parametrize(("n", "label", "complaint"), [
+    (0, 0, r"expected rgb \(n, 64, 64, 3\) and labels \(n, 64, 64\) of bytes, found rgb \(0, 64, 64, 3\)"),
+    (2, 10, r"expected labels 0\.\.9, found 10")], ids=["no view", "no label"])
+def test_views_of_which_none_is_there_or_with_a_label_that_is_none_are_refused(tmp_path, n, label, complaint):
+    path, labels = tmp_path / "views.npz", np.full((n, 64, 64), label, np.uint8)
+    save_arrays(path, {"homes": 1, "views": n}, rgb=np.zeros((n, 64, 64, 3), np.uint8), labels=labels)
+    with pytest.raises(ValueError, match=rf"views\.npz: {complaint}"):
+        learned.load_views(path)
+
+
+def test_views_are_loaded_as_they_were_saved_up_to_the_last_label(tmp_path):
+    path, labels = tmp_path / "views.npz", np.full((16, 64, 64), 9, np.uint8)
+    save_arrays(path, {"homes": 1, "views": 16}, rgb=VIEWS[0], labels=labels)
+    views, made_by = learned.load_views(path)
+    assert made_by == {"homes": 1, "views": 16}
+    for found, saved in zip(views, (VIEWS[0], labels), strict=True):
+        np.testing.assert_array_equal(found, saved)
+
+
 def test_places_are_learnt_from_the_poses_that_are_drawn_for_it(parts, monkeypatch):
     senses, grid, _ = parts
     taught, asked = [], []

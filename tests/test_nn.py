@@ -177,6 +177,12 @@ def test_the_gradient_check_sees_a_wrong_gradient_and_leaves_its_argument_as_it_
     np.testing.assert_array_equal(x, kept)
 
 
+def test_the_gradient_check_sees_that_a_small_gradient_is_off_by_half():
+    x, rng = normal(0, 7), np.random.default_rng(0)
+    assert nn.gradient_error(lambda: 1e-4 * x.sum(), x, np.full(7, 1e-4), rng) < 1e-3
+    assert nn.gradient_error(lambda: 1e-4 * x.sum(), x, np.full(7, 0.5e-4), rng) > 0.1
+
+
 def test_the_gradient_check_sees_what_is_no_number():
     x, rng = normal(0, 7), np.random.default_rng(0)
     assert not nn.gradient_error(lambda: (x ** 2).sum(), x, np.full(7, np.nan), rng) < CLOSE

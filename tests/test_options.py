@@ -103,6 +103,22 @@ def test_the_nearest_are_those_of_brute_force(k, monkeypatch):
         np.testing.assert_allclose(np.sort(row[chosen]), np.sort(row)[:min(k, 90)], atol=1e-6)
 
 
+def test_a_hundred_neighbours_count_unless_told_otherwise():
+    """The nearest 50 steps ended in the true place's rank 1, the next 50 in rank 2, all others in rank 5."""
+    seen, state = (ranking(1, 2, 3), ranking(1, 3, 2), ranking(21, 22)), ranking(1, 2, 3, 4, 5)
+    steps = [(one, 0, state, place) for one, place in zip(seen, (1, 2, 5), strict=True) for _ in range(50)]
+    made = Options(lived(*steps), np.arange(3)[:, None], np.zeros(3))
+    assert made.values(seen[0][None])[0, 0] == pytest.approx((1 + 1 / 2) / 2)
+
+
+def test_over_the_first_of_many_first_views_a_mean_is_taken(monkeypatch):
+    monkeypatch.setattr(options, "FIRST_VIEWS", 2)
+    a, b = ranking(1, 2, 3), ranking(11, 12, 13)
+    experience = lived((a, 0, a, 1), (a, 0, a, 1), (b, 0, a, 2), (b, 0, a, 2))  # worth 1 from a and 1/2 from b
+    made = options_of(experience, 1, 1, worth=(0.3, 0, 0))
+    assert made.q_values(np.stack([a, b]))[:, 0] == pytest.approx([0.3, 0.3 - 1 / 2])
+
+
 def test_the_better_direction_is_found_where_it_depends_on_the_first_view():
     """Two kinds of views: in the one it pays to turn left on and on, in the other right; all else is noise."""
     rng, kinds = np.random.default_rng(0), (ranking(0, 1, 2), ranking(15, 16, 17))

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from conftest import room, thing
 
+from gnl import photo as photo_module
 from gnl.camera import HEIGHT_M, render
 from gnl.classes import BED, FLOOR, OTHER, SOFA, WALL
 from gnl.photo import SUN_RAD
+from gnl.strip import slopes
 from gnl.world import World
 
 POSES = np.array([[2.0, 1.2, 0.4], [5.0, 1.5, 2.5]])
@@ -96,6 +98,59 @@ def test_a_clean_pixel_is_albedo_times_facing_times_distance():
     depth = HEIGHT_M / (63 / 64)
     expected = np.array([10, 200, 90]) * 0.95 * (0.6 + 0.4 * np.exp(-depth / 5))
     np.testing.assert_allclose(rgb[0, 63, 32], expected, atol=1)
+
+
+@pytest.mark.parametrize("distance_m", [10.0, 15.0])
+def test_a_far_wall_is_as_dark_as_its_distance_makes_it(distance_m):
+    world = World(room(size=(40.0, 40.0), colors={"wall": [250, 200, 150]}))
+    pose = np.array([[40 - 0.05 - distance_m, 20.0, 0.0]])
+    facing = 0.8 + 0.15 * np.cos(np.pi - SUN_RAD)
+    expected = np.array([250, 200, 150]) * facing * (0.6 + 0.4 * np.exp(-distance_m / 5))
+    np.testing.assert_allclose(photo(world, pose, noise=0)[0, 32, 32], expected, atol=1)
+
+
+def test_an_underside_is_darker_than_any_other_face():
+    """The board hangs 0.5 m above the camera and over it."""
+    board = {**thing("other", 3, 2, 3.0, 3, 0.4, z0=HEIGHT_M + 0.5), "color": [250, 200, 150]}
+    rgb, labels = render(World(room(board)), np.array([[2.0, 2.0, 0.0]]), np.random.default_rng(0), 64, noise=0)
+    assert labels[0, 10, 32] == OTHER
+    depth = 0.5 / (1 - 21 / 64)
+    expected = np.array([250, 200, 150]) * 0.6 * (0.6 + 0.4 * np.exp(-depth / 5))
+    np.testing.assert_allclose(rgb[0, 10, 32], expected, atol=1)
+
+
+@pytest.fixture
+def lucky(monkeypatch):
+    """A photograph whose luck is known: plain exposure, such a gradient across and down, no noise of the sensor."""
+    def draw(world, poses, noise=0, across=0.0, down=0.0):
+        one = np.ones((len(poses), 1, 1), np.float32)
+        monkeypatch.setattr(photo_module, "_luck", lambda n, H, *_: (
+            np.full((n, 3), 255.0), across * one, down * one, np.zeros((n, 3, H, H), np.int8)))
+        return photo(world, poses, noise=noise)
+    return draw
+
+
+def test_the_light_falls_off_across_or_down_the_view(lucky, two_rooms):
+    plain, slope = lucky(two_rooms, POSES), slopes(64)
+    for across, down, light in ((0.3, 0.0, 1 + 0.3 * slope), (0.0, 0.2, 1 + 0.2 * slope[:, None])):
+        expected = np.minimum(plain * light[..., None] if down else plain * light[:, None], 255)
+        assert abs(lucky(two_rooms, POSES, across=across, down=down) - expected).max() < 2.5
+
+
+def test_waves_lie_on_the_floor_whoever_looks_and_wherever_from(lucky):
+    world = World(room(size=(8.0, 6.0), colors={"floor": [200, 150, 100]}))
+    n, poses = len(world.label) + 1, np.array([[2.0, 1.2, 0.4], [5.0, 3.5, 2.5]])
+    turn, pitch = 2.4 * n, 12 + 9 * np.sin(1.7 * n)
+    depth = HEIGHT_M / -slopes(64)[40:]  # of the rows below the horizon
+    for pose, rgb in zip(poses, lucky(world, poses, noise=1), strict=True):
+        for row, ahead in enumerate(depth, 40):
+            left = ahead * slopes(64)
+            x = pose[0] + ahead * np.cos(pose[2]) - left * np.sin(pose[2])
+            y = pose[1] + ahead * np.sin(pose[2]) + left * np.cos(pose[2])
+            wave = np.sin(n + pitch * (x * np.cos(turn) + y * np.sin(turn) - HEIGHT_M * np.sin(3.1 * n)))
+            light = 0.95 * (0.6 + 0.4 * np.exp(-ahead / 5)) * (1 + 0.1 * wave)
+            on_floor = (x > 0.1) & (x < 7.9) & (y > 0.1) & (y < 5.9)
+            np.testing.assert_allclose(rgb[row, on_floor, 0], (200 * light)[on_floor], atol=1.5)
 
 
 def test_what_lies_at_the_height_of_the_camera_is_seen_edge_on():

@@ -72,6 +72,21 @@ def test_a_concave_shape_gets_several_rectangles_of_its_own_area(shape, area, mi
     np.testing.assert_allclose(area_of(cover), area, rtol=1e-6)
 
 
+def test_a_cut_ends_where_it_first_meets_a_side():
+    """A polygon of many arms, where the cut straight on meets farther sides, too."""
+    cover = cover_polygon([(5, 6), (7, 3), (4, 5), (3, 0), (2, 0), (3, 5), (1, 5), (1, 7), (2, 6), (4, 7)])
+    np.testing.assert_allclose(area_of(cover), 19.25, atol=0.01)
+
+
+@pytest.mark.parametrize(("notch", "n_boxes"), [(0.2, 1), (0.9, 1), (1.5, 2)])
+def test_a_small_notch_is_not_worth_a_cut(notch, n_boxes):
+    """A 3 x 3 m square that lacks a corner: cut where its cover then is smaller by a tenth."""
+    square = np.array([[0, 0], [3, 0], [3, 3 - notch], [3 - notch, 3 - notch], [3 - notch, 3], [0, 3]])
+    cover = cover_polygon(square)
+    assert len(cover) == n_boxes
+    np.testing.assert_allclose(area_of(cover), 9 - notch ** 2 * (n_boxes > 1))
+
+
 def test_every_point_of_a_polygon_lies_in_its_cover_and_the_cover_in_one_rectangle():
     rng = np.random.default_rng(0)
     for _ in range(100):

@@ -276,6 +276,15 @@ def test_intervals_of_few_cells_are_told_to_say_little(written):
     assert "from a bootstrap of whole cells: of so few cells they say nothing." in written
 
 
+@pytest.mark.parametrize(("n", "few"), [(9, True), (10, False)])
+def test_ten_cells_are_no_longer_few(folder, n, few):
+    cells, _, settings = report.load(folder)
+    text = next(itertools.islice(report.sections((cells * 2)[:n], [], settings), 1, None))
+    assert f"{n} cells" in text
+    assert ("of so few cells they say nothing" in text) == few
+    assert ("they hold for these homes" in text) != few
+
+
 def test_the_pictures_are_there_and_the_text_names_them(folder, written):
     for name in re.findall(r"\]\((\w+\.png)\)", written):
         with Image.open(folder / "report" / name) as picture:

@@ -65,6 +65,21 @@ def test_a_bump_reports_how_far_it_got():
     assert bumped.tolist() == [True]
 
 
+@pytest.mark.parametrize(("x", "end"), [(5.2495, 5.749), (5.7495, 5.7495)], ids=["comes near", "is nearer"])
+def test_a_robot_stops_a_millimetre_from_contact_and_is_never_pushed_back(x, end):
+    pose, odometry, bumped = Robot(World(room()), SURE).step([[x, 2, 0.0]], [FORWARD], rng())
+    np.testing.assert_allclose(pose, [[end, 2, 0]], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(odometry, [[end - x, 0]], rtol=0, atol=1e-6)
+    assert bumped.tolist() == [True]
+
+
+def test_a_slimmer_robot_gets_nearer_to_the_wall():
+    for radius_m, end in ((0.1, 5.849), (0.4, 5.549)):
+        pose, _, bumped = Robot(World(room()), SURE, radius_m).step([[5.5, 2, 0.0]], [FORWARD], rng())
+        np.testing.assert_allclose(pose[0, 0], end, rtol=0, atol=1e-6)
+        assert bumped.tolist() == [True]
+
+
 def test_a_robot_at_contact_can_turn_and_leave():
     robot, pose = Robot(World(room()), SURE), np.array([[5.5, 2, 0.1]])
     for _ in range(3):

@@ -1,5 +1,7 @@
 """The net's gradient is right in every parameter, it learns, and it is blind to the camera's exposure."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -126,6 +128,48 @@ def test_a_mirrored_view_has_mirrored_labels(monkeypatch):
     assert {int(y[0, 0, 0]) for y in told} == {0, 9}  # both ways round
 
 
+@pytest.fixture
+def no_net(monkeypatch):
+    """Training without a net: the batches that it would see, and the rates of its steps."""
+    batches, rates = [], []
+    monkeypatch.setattr(segnet, "forward", lambda params, rgb: (
+        batches.append(rgb) or np.zeros((10, 4, len(rgb), rgb.shape[1] // 4, rgb.shape[2] // 4, 4)), None))
+    monkeypatch.setattr(segnet, "backward", lambda *_: {})
+    monkeypatch.setattr(segnet, "Adam", lambda params: SimpleNamespace(step=lambda grads, rate: rates.append(rate)))
+    return batches, rates
+
+
+def test_half_of_the_batches_are_mirrored_and_none_upside_down(no_net):
+    rgb = np.arange(64, dtype=np.uint8).reshape(1, 8, 8, 1).repeat(3, 3)
+    segnet.train({}, rgb, np.zeros((1, 8, 8), np.uint8), np.random.default_rng(0), epochs=400, batch=1)
+    mirrored = [seen[0, 0, 0, 0] == 7 for seen in no_net[0]]
+    for seen, other_way in zip(no_net[0], mirrored, strict=True):
+        np.testing.assert_array_equal(seen, rgb[:, :, ::-1] if other_way else rgb)
+    assert 0.4 < np.mean(mirrored) < 0.6
+
+
+def test_the_rate_rises_over_the_first_20th_of_the_steps_and_falls_along_a_cosine_to_zero(no_net):
+    rgb = np.zeros((8, 8, 8, 3), np.uint8)
+    segnet.train({}, rgb, rgb[..., 0], np.random.default_rng(0), epochs=20, batch=1, rate=0.5)
+    share = np.arange(1, 161) / 160
+    falling = 0.25 * (1 + np.cos(np.pi * share))
+    np.testing.assert_allclose(no_net[1], np.append(np.arange(1, 9) / 8, np.ones(152)) * falling, atol=1e-12)
+
+
+def test_fewer_views_than_fill_a_batch_are_learned_from(no_net):
+    rgb = np.zeros((2, 8, 8, 3), np.uint8)
+    segnet.train({}, rgb, rgb[..., 0], np.random.default_rng(0), epochs=3, batch=4)
+    assert [len(seen) for seen in no_net[0]] == [2, 2, 2]
+
+
+def test_of_equal_scores_the_last_class_is_predicted():
+    params = {name: np.zeros_like(p) for name, p in segnet.new_params(np.random.default_rng(0)).items()}
+    views = np.zeros((1, 16, 16, 3), np.uint8)
+    assert (segnet.predict(params, views) == 9).all()
+    params["head.b"].reshape(10, 4)[[2, 5]] = 1
+    assert (segnet.predict(params, views) == 5).all()
+
+
 def test_one_seed_trains_one_net(views):
     nets = [segnet.new_params(np.random.default_rng(0)) for _ in range(2)]
     for net in nets:
@@ -174,6 +218,7 @@ def test_views_that_are_no_bytes_of_three_colours_are_refused(views, params):
 @pytest.mark.parametrize(("change", "complaint"), [
     ({"labels": np.full((2, 64, 64), 255, np.uint8)}, r"labels: .* each pixel 0\.\.9, found \(2, 64, 64\) up to 255"),
     ({"labels": np.zeros((1, 64, 64), np.uint8)}, r"labels: .* found \(1, 64, 64\) up to 0 for views \(2, 64, 64, 3\)"),
+    ({"labels": np.full((2, 64, 64), -1, np.int8)}, r"labels: .* each pixel 0\.\.9, found \(2, 64, 64\) up to 0"),
     ({"rgb": np.zeros((0, 64, 64, 3), np.uint8), "labels": np.zeros((0, 64, 64), np.uint8)}, "at least one view"),
     ({"batch": 0}, "batch, epochs: expected at least 1 and at least 0, found 0 and 1"),
     ({"epochs": -1}, "batch, epochs: expected .* found 4 and -1")])

@@ -1,9 +1,10 @@
 """Laws of the procedural homes and of the flat that is drawn by hand."""
 
+import functools
 import json
 import subprocess
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
 from itertools import combinations
 from pathlib import Path
 
@@ -12,10 +13,12 @@ import pytest
 from scipy import ndimage
 
 import data_gen
+from data_gen import rooms as rooms_module
 from data_gen.__main__ import main
-from data_gen.furnish import ALONE, AT_WALL
+from data_gen.box import Box, distance, inside, outline
+from data_gen.furnish import ALONE, AT_WALL, furnish, in_one_part
 from data_gen.furniture import ROOMS
-from data_gen.layout import turn
+from data_gen.layout import draw_gaps, good_shape, turn
 from data_gen.rooms import home_plan, make_home
 from gnl.classes import CLASSES
 from gnl.world import World
@@ -251,15 +254,21 @@ def test_a_home_without_a_name_of_a_file_is_one_line(capsys):
 
 def by_room(plan):
     """Type and polygon of each room, and its things: name, middle, unit vector to its front, polygon, whole object."""
+    middles = np.array([np.mean(thing["polygon"], 0) for thing in plan["objects"]])
     for room in plan["rooms"]:
         things = []
-        for thing in plan["objects"]:
-            polygon = np.array(thing["polygon"])
+        for i in np.flatnonzero(covers(room["polygon"], *middles.T)):
+            thing, polygon = plan["objects"][i], np.array(plan["objects"][i]["polygon"])
             back, front = polygon[:2].mean(0), polygon[2:].mean(0)  # corners begin at the back
-            if covers(room["polygon"], *polygon.mean(0)):
-                look = (front - back) / np.hypot(*(front - back))
-                things.append((thing["name"], polygon.mean(0), look, polygon, thing))
+            look = (front - back) / np.hypot(*(front - back))
+            things.append((thing["name"], middles[i], look, polygon, thing))
         yield room["type"], np.array(room["polygon"]), things
+
+
+@pytest.fixture(scope="module")
+def all_rooms(homes):
+    """Of all homes: polygon of each room, and its things, as by_room gives them."""
+    return [(polygon, things) for plan in homes for _, polygon, things in by_room(plan)]
 
 
 def test_each_chair_looks_at_its_table(homes):
@@ -303,6 +312,54 @@ def test_the_floor_before_what_stands_at_a_wall_is_free_of_what_stands_alone(hom
             assert not blocked
 
 
+@functools.cache
+def rules_of(name):
+    """First words of all rules by which a piece gets its place."""
+    return {rule.split()[0] for pieces in ROOMS.values() for of_name, words, _ in pieces if of_name == name
+            for rule in words.split(" or ")}
+
+
+def test_lamps_monitors_and_ovens_stand_on_the_top_of_something(all_rooms):
+    raised = 0
+    for _, things in all_rooms:
+        for name, middle, *_, thing in things:
+            if rules_of(name) == {"on"}:
+                assert any(abs(top(other) - thing["z0"]) < 2e-4 and covers(polygon, *middle)
+                           for *_, polygon, other in things)
+                raised += 1
+    assert raised > 100
+
+
+def test_what_stands_at_a_wall_has_its_back_two_centimetres_from_it_and_in_a_corner_a_side_too(all_rooms):
+    found = Counter()
+    for room, things in all_rooms:
+        low, high = room.min(0) + 0.05, room.max(0) - 0.05  # the faces of walls 10 cm thick
+        for name, _, _, polygon, _ in things:
+            rules, back = rules_of(name), polygon[:2].mean(0)
+            if rules <= {*AT_WALL, "above"}:
+                assert abs(np.minimum(back - low, high - back).min() - 0.02) < 2e-3
+                found["wall"] += 1
+            if rules == {"corner"}:
+                assert abs(np.minimum(polygon.min(0) - low, high - polygon.max(0)) - 0.02).max() < 2e-3
+                found["corner"] += 1
+    assert found["wall"] > 1000
+    assert found["corner"] > 200
+
+
+@pytest.mark.parametrize(("name", "other"), [("mirror", "basin"), ("picture", "bed")])
+def test_most_mirrors_hang_above_the_basin_and_most_pictures_above_the_bed(all_rooms, name, other):
+    above = []
+    for _, things in all_rooms:
+        hanging, below = ([thing for thing in things if thing[0] == of_name] for of_name in (name, other))
+        if hanging and below:
+            (_, high, look, polygon, _), (_, low, low_look, low_polygon, _) = hanging[0], below[0]
+            along = np.array([-look[1], look[0]])
+            room_to_slide = np.ptp(low_polygon @ along) - np.ptp(polygon @ along)
+            above.append(look @ low_look > 0.99 and abs((high - low) @ along) < abs(room_to_slide) / 2 + 2e-3)
+    assert len(above) > 30
+    assert np.mean(above) > 0.7  # the others found no place there
+
+
 @pytest.mark.parametrize("name", ["nightstand", "chair"])
 def test_pairs_and_sets_are_alike_and_there_are_some(homes, name):
     pairs = 0
@@ -338,6 +395,83 @@ def test_corridors_lead_to_a_living_room_or_to_the_outer_wall(homes):
         x, y = (entrance + 2 * along + 0.1 * ahead + np.linspace(-0.6, 0.6, 25)[:, None] * left).T
         beyond.add(tuple(room["type"] for room in plan["rooms"] if covers(room["polygon"], x, y).any()))
     assert beyond == {(), ("living room",)}
+
+
+def test_the_front_door_is_in_the_middle_of_the_corridors_end(homes):
+    for plan in homes:
+        corridor = next(np.array(room["polygon"]) for room in plan["rooms"] if room["type"] == "corridor")
+        front_door = next(door["segment"] for door in plan["doors"] if door["state"] == "closed")
+        along = corridor.mean(0) - np.reshape(front_door, (2, 2)).mean(0)
+        assert abs(along).min() < 1e-3
+
+
+def test_no_bathroom_is_narrower_than_a_metre_and_seventy():
+    assert good_shape("bathroom", 1.7, 3.0) and good_shape("bathroom", 3.0, 1.7)
+    assert not good_shape("bathroom", 1.65, 3.0) and not good_shape("bathroom", 3.0, 1.65)
+
+
+@pytest.mark.parametrize(("shared_m", "n_openings"), [(1.4, 0), (1.6, 1), (3.0, 1)])
+def test_rooms_of_the_day_lie_open_to_one_another_where_they_share_a_metre_and_a_half(shared_m, n_openings):
+    rooms = [("outside", (-1.0, -2.0, 0.0, -0.5)), ("corridor", (0.0, -2.0, 8.0, -0.5)),
+             ("living room", (0.0, 0.0, 4.0, 4.0)), ("kitchen", (4.0, 4.0 - shared_m, 8.0, 8.0 - shared_m))]
+    kinds = [gap.kind for gap in draw_gaps(rooms, np.random.default_rng(0))]
+    assert kinds.count("opening") == n_openings
+
+
+def furnished(monkeypatch, *lacking):
+    """A home whose rooms hold one thing of each class, but in each draw of its furniture one is lacking; all asked."""
+    lacking, asked = iter([*lacking, None]), []
+
+    def furnish(room, kind, keep_clear, leaves, key):
+        asked.append((room, leaves))
+        if kind == "corridor":  # the first room of each draw
+            furnish.lacks = next(lacking)
+        return [{"class": name, "polygon": outline(room).tolist(), "height": 0.01}
+                for name in rooms_module.IN_EVERY_HOME - {furnish.lacks}]
+
+    monkeypatch.setattr(rooms_module, "furnish", furnish)
+    return home_plan(3), asked
+
+
+def test_a_home_that_would_lack_a_class_is_drawn_anew(monkeypatch):
+    plan, asked = furnished(monkeypatch, "tv", "bed")
+    assert {one["class"] for one in plan["objects"]} == rooms_module.IN_EVERY_HOME
+    assert len(asked) > 2 * len(plan["rooms"])
+
+
+def test_each_open_leaf_is_in_the_way_in_the_room_that_it_stands_in(monkeypatch):
+    plan, asked = furnished(monkeypatch)
+    assert all(inside(room, one, -0.01) for room, leaves in asked for one in leaves)
+    middles = sorted((round(one.x, 3), round(one.y, 3)) for _, leaves in asked for one in leaves)
+    doors = [np.mean(leaf(door), 0).round(3) for door in plan["doors"] if door["state"] == "open"]
+    np.testing.assert_allclose(middles, sorted(map(tuple, doors)), atol=2e-3)
+
+
+@pytest.mark.parametrize("leaves", [[], [Box(0.4, -1.2, 0.0, 0.04, 0.9, 2.0)]], ids=["no leaf", "leaf"])
+def test_the_floor_of_a_furnished_room_hangs_together_however_narrow_the_ways(leaves):
+    """Cells of 10 cm with a middle that is 25 cm from all things, and between them the ways of a disc of 20 cm."""
+    room = Box(0.0, 0.0, 0.0, 3.0, 3.4, 2.5)
+    x, y = grid((-1.5, -1.7), (1.5, 1.7), 0.02)
+    to_walls = np.minimum(1.5 - abs(x), 1.7 - abs(y)) - 0.05
+    for key in range(60):
+        things = furnish(room, "bedroom", [], leaves, key) or []
+        clearance = np.min([to_walls, *(distance(one, x, y) for one in (*leaves, *map(box_of, things))
+                                        if one.z0 < ROBOT_HEIGHT_M and one.z0 + one.height > 0.05)], axis=0)
+        parts, middles = ndimage.label(clearance > ROBOT_M)[0], np.s_[2::5, 2::5]  # of 5 x 5 points of the raster
+        assert len({*parts[middles][clearance[middles] > ROBOT_M + 0.0501].tolist()}) == 1
+
+
+@pytest.mark.parametrize(("narrowest_m", "one"), [(0.24, False), (0.26, True)])
+def test_a_way_is_wide_enough_between_the_middles_of_its_cells_too(narrowest_m, one):
+    """Half a cell away from a middle things may be nearer by half a cell."""
+    assert in_one_part(np.array([[0.4, 0.4, narrowest_m, 0.4, 0.4]])) == one
+
+
+def box_of(thing):
+    """The Box of an object of a floor plan."""
+    a, b, c, _ = np.array(thing["polygon"])
+    return Box(*(a + c) / 2, np.arctan2(*(b - a)[::-1]), np.hypot(*(b - a)), np.hypot(*(c - b)), thing["height"],
+               thing["z0"])
 
 
 def test_flat_keeps_the_same_laws(flat):

@@ -100,6 +100,16 @@ def test_a_picture_shows_both_kinds_of_starts_where_they_are():
     assert violet.max() < pixels.shape[1] / 2 < orange.min()
 
 
+def test_a_picture_shows_all_tests_and_the_first_of_the_training_starts(monkeypatch):
+    home, shown = World(room()), []
+    starts = {name: home.free_poses(n, np.random.default_rng(n)) for name, n in (("training", 30), ("tests", 20))}
+    monkeypatch.setattr(starts_module.Map, "starts", lambda _, poses, colour: shown.append((colour, poses)))
+    starts_module.picture(home, starts, n=7)
+    assert [colour for colour, _ in shown] == [BELIEF, ROBOT]
+    np.testing.assert_array_equal(shown[0][1], starts["training"][:7])
+    np.testing.assert_array_equal(shown[1][1], starts["tests"])
+
+
 def test_a_home_is_drawn_with_its_starts_and_again_if_it_is_lost(tmp_path):
     def drawn():
         with pytest.raises(SystemExit) as exit:
@@ -159,6 +169,15 @@ def test_a_cell_that_cannot_be_is_one_line(tmp_path, capsys, words):
     assert exit.value.code == 2
     assert capsys.readouterr().err == ("python -m data_gen: --cell: expected WORLD M DEG SEED as in 800 0.2 10 0, "
                                        f"M of at most six digits, found {words}\n")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("option", ["training", "tests", "validation", "jobs"])
+def test_no_starts_and_no_processes_are_one_line(tmp_path, capsys, option):
+    with pytest.raises(SystemExit) as exit:
+        main(["starts", str(tmp_path / "out"), "--cell", "800", "0.2", "10", "0", f"--{option}", "0"])
+    assert exit.value.code == 2
+    assert capsys.readouterr().err == f"python -m data_gen: --{option}: expected at least 1, found 0\n"
     assert not list(tmp_path.iterdir())
 
 

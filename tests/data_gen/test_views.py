@@ -225,6 +225,15 @@ def test_views_of_other_code_are_made_anew(tokens, tmp_path, monkeypatch):
     assert tokens == [0, 1, 0, 1]
 
 
+@pytest.mark.parametrize("n_arguments", [0, 2], ids=["gnl", "data_gen"])
+def test_views_of_other_code_of_one_package_alone_are_made_anew(tokens, tmp_path, monkeypatch, n_arguments):
+    path, options, code = tmp_path / "views.npz", ["--homes", 2, "--views", 6], views.code
+    assert run("views", path, *options) == 0
+    monkeypatch.setattr(views, "code", lambda *where: "other" if len(where) == n_arguments else code(*where))
+    assert run("views", path, *options) == 0
+    assert tokens == [0, 1, 0, 1]
+
+
 @pytest.mark.parametrize("made_by", ["a test", {}, {"episodes": 9}, {"views": 9}], ids=str)
 def test_views_are_not_written_over_a_file_of_something_else(tokens, tmp_path, capsys, made_by):
     path = tmp_path / "store.npz"
