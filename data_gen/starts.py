@@ -19,7 +19,7 @@ from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
 from gnl.gaps import poses_beyond
 from gnl.learned import code, digest
-from gnl.terminal import Stage, processes
+from gnl.terminal import Stage, count, processes
 from gnl.world import World
 
 from .rooms import make_home
@@ -68,7 +68,7 @@ def run(args):
             if args.picture:
                 save_png(picture(homes[cell.world], poses.result()), files[cell].with_suffix(".png"))
             stage((i + 1) / len(todo))
-    stage.done(f"{len(todo)} gap{'s' * (len(todo) > 1)} between where one learns and where one is tested")
+    stage.done(f"{count(len(todo), 'gap')} between where one learns and where one is tested")
 
 
 def cell_of(words):

@@ -11,6 +11,7 @@ from PIL import Image
 from . import draw
 from .classes import CLASSES, N_CLASSES, PALETTE, from_ade20k
 from .scene_graph import VIEW_PX, scene_graph, words_in_words
+from .terminal import count
 
 
 def add_arguments(parser):
@@ -44,11 +45,6 @@ def run(args):
     rows, columns = (np.arange(VIEW_PX) * n // VIEW_PX for n in labels.shape)
     draw.save_png(draw.graph(graph, draw.labels(labels[rows[:, None], columns], VIEW_PX)), out)
     print(f"drawn in {out}")
-
-
-def count(n, noun):
-    """A number of things in words: 1 node, 2 nodes."""
-    return f"{n} {noun}" + "s" * (n != 1)
 
 
 def load(path, ade20k=False):

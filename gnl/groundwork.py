@@ -14,7 +14,7 @@ import numpy as np
 from . import learned
 from .files import load_arrays
 from .senses import Senses
-from .terminal import Stage
+from .terminal import Stage, count
 from .world import World
 
 
@@ -35,7 +35,7 @@ def prepare(out, settings, cells, jobs, pool):
     made_by = {"net": learned.fingerprint(net), "noise": settings.noise}
     for world, gcn in learned.place_classifiers(out / "learned", senses, settings.gcn_views, 0, made_by, pool, **how):
         yield world, replace(senses[world], gcn=gcn)
-    stage.done(f"places of {len(worlds)} home{'s' * (len(worlds) > 1)}, {settings.gcn_views} views of each")
+    stage.done(f"places of {count(len(worlds), 'home')}, {settings.gcn_views} views of each")
 
 
 def taught_net(out, settings, **others):

@@ -83,7 +83,7 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise, wanted):
 def _luck(n_views, size, rng, noise):
     """What chance gives to n views: exposure (n, 3), gradient across and down (n, 1, 1) each, grit (n, 3, H, H) int8.
 
-    Light and exposure are drawn before the pixels: so many views of another size have the same.
+    Light and exposure are drawn before the pixels: as many views of another size have the same.
     """
     n, pixels = n_views, n_views * size * size
     exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((n, 1)))

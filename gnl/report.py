@@ -13,7 +13,7 @@ from .groundwork import check_settings
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
 from .table import path_of
-from .terminal import Stage
+from .terminal import Stage, count
 
 SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
 PAIRS = ("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "Scan"), ("Ours+", "MV"), \
@@ -170,7 +170,7 @@ def power(results, methods):
                                      for points in RESOLVED)])
     return ("To see a true difference in 80 % of all experiments at 95 %: episodes in pairs / episodes of each method "
             "that are not paired. This takes the episodes of a cell as independent; where they are alike it takes "
-            "more.\n\n" + markdown(["", *(f"{n} point{'s' * (n != 1)}" for n in RESOLVED)], rows))
+            "more.\n\n" + markdown(["", *(count(n, "point") for n in RESOLVED)], rows))
 
 
 def locations(results, methods):

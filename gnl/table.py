@@ -12,7 +12,7 @@ from .gcn import BATCH, EPOCHS, RATE
 from .groundwork import check_settings, load_starts, prepare
 from .paper import WORLDS
 from .photo import check_noise
-from .terminal import Stage, executor
+from .terminal import Stage, count, executor
 
 GAPS = tuple(f"{m}/{deg}" for m in GAPS_M for deg in GAPS_DEG)
 
@@ -65,7 +65,7 @@ def run(args):
     if todo:
         with executor(args.jobs, args.dask) as pool:
             run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
-    print(f"{len(cells)} cell{'s' * (len(cells) > 1)} in {out / 'cells'}; `report --out {out}` tells what they say")
+    print(f"{count(len(cells), 'cell')} in {out / 'cells'}; `report --out {out}` tells what they say")
 
 
 def jobs_of(out, settings, cells, todo, jobs, pool):
@@ -123,7 +123,7 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
         news.clear()
     if faults:
         raise faults[0]
-    stage.done(f"{n_jobs} cell{'s' * (n_jobs != 1)} of {n_episodes} episodes each")
+    stage.done(f"{count(n_jobs, 'cell')} of {n_episodes} episodes each")
 
 
 def check(args):

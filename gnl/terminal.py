@@ -48,6 +48,11 @@ def command_line(program, description, commands, argv=None):
     guarded(program, run)
 
 
+def count(n, noun):
+    """A number of things in words: 1 node, 2 nodes."""
+    return f"{n} {noun}" + "s" * (n != 1)
+
+
 def _clear(stream):
     """What wipes the last line of a stream; nothing where there is no terminal, or a dumb one."""
     return CLEAR if stream.isatty() and os.environ.get("TERM") != "dumb" else ""
