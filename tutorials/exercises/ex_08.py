@@ -65,6 +65,7 @@ def grade_8_4(pool):
 
 def grade_8_5(bayes_step):
     start = np.array([0.5, 0.3, 0.2])
+    expect("who surely moves is one cell on", bayes_step(np.array([1.0, 0, 0]), np.ones(3), 1.0), [0, 1, 0])
     expect("all views alike", bayes_step(start, np.ones(3), 0.8), [0.26, 0.46, 0.28])
     expect("a view of cell 1 or 2", bayes_step(start, np.array([0, 0.5, 1]), 0.8), np.array([0, 0.23, 0.28]) / 0.51)
     expect("a view that nothing explains", bayes_step(start, np.zeros(3), 1.0), [0.2, 0.5, 0.3])
