@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gnl.files import check_folder
+from gnl.files import check_file
 from gnl.floor_plan import DOOR_HEIGHT_M, WALL_HEIGHT_M
 from gnl.world import LEAF_THICKNESS_M, World
 
@@ -38,7 +38,7 @@ def add_arguments(parser):
 def run(args):
     """One procedural home as a floor plan; in the place of another one, but of no other file."""
     home, path = make_home(args.seed, args.aliasing), Path(args.out)
-    check_folder("out", path.parent if args.out else "")
+    check_file("out", args.out)
     if path.exists() and not re.fullmatch(r"home-\d+", World.load(path).name):
         raise ValueError(f"{path}: expected a procedural home or nothing, found {World.load(path).name}")
     home.save(path)

@@ -10,7 +10,7 @@ import numpy as np
 
 from gnl.camera import render
 from gnl.classes import N_CLASSES
-from gnl.files import check_folder, load_arrays, save_arrays
+from gnl.files import check_file, load_arrays, save_arrays
 from gnl.learned import code, digest
 from gnl.paper import WORLDS
 from gnl.photo import check_noise
@@ -40,7 +40,7 @@ def run(args):
     """Views of many homes and their true labels, unless the file has just these already."""
     made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise, "kinds": args.kinds,
                "code": digest([code(), code(Path(__file__).parent, MODULES)])}
-    check_folder("out", Path(args.out).parent if args.out else "")
+    check_file("out", args.out)
     if Path(args.out).exists():
         there = load_arrays(args.out)[1]
         if there == made_by:

@@ -52,6 +52,13 @@ def check_folder(option, path):
         raise ValueError(f"{option}: expected a folder to write in, found {there}, where you may not")
 
 
+def check_file(option, path):
+    """ValueError if there is no name for a file, or its folder cannot be."""
+    if not str(path):
+        raise ValueError(f"{option}: expected a file, found no name")
+    check_folder(option, Path(path).parent)
+
+
 def save_arrays(path, made_by, **arrays):
     """Save named arrays and `made_by`, a JSON-able description of what produced them, as .npz."""
     buffer = io.BytesIO()

@@ -249,7 +249,7 @@ def test_a_home_takes_the_place_of_another_procedural_one_and_of_no_other_file(t
 
 def test_a_home_without_a_name_of_a_file_is_one_line(capsys):
     assert written("") == 2
-    assert capsys.readouterr().err == "python -m data_gen: out: expected a folder, found no name\n"
+    assert capsys.readouterr().err == "python -m data_gen: out: expected a file, found no name\n"
 
 
 def by_room(plan):

@@ -255,12 +255,13 @@ def test_views_are_not_written_over_a_damaged_file(tokens, tmp_path, capsys):
     assert str(path) in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("out", "said"), [("", "found no name"), ("file/views.npz", "found the file file")])
+@pytest.mark.parametrize(("out", "said"), [("", "a file, found no name"),
+                                          ("file/views.npz", "a folder, found the file file")])
 def test_where_no_folder_can_be_views_are_refused_before_any_is_drawn(tokens, tmp_path, monkeypatch, capsys, out, said):
     (tmp_path / "file").touch()
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as exit:
         main(["views", out])
     assert exit.value.code == 2
-    assert capsys.readouterr() == ("", f"python -m data_gen: out: expected a folder, {said}\n")
+    assert capsys.readouterr() == ("", f"python -m data_gen: out: expected {said}\n")
     assert tokens == []
