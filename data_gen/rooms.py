@@ -37,11 +37,10 @@ def add_arguments(parser):
 
 def run(args):
     """One procedural home as a floor plan; in the place of another one, but of no other file."""
-    home, path = make_home(args.seed, args.aliasing), Path(args.out)
     check_file("out", args.out)
-    if path.exists() and not re.fullmatch(r"home-\d+", World.load(path).name):
-        raise ValueError(f"{path}: expected a procedural home or nothing, found {World.load(path).name}")
-    home.save(path)
+    if Path(args.out).exists() and not re.fullmatch(r"home-\d+", name := World.load(args.out).name):
+        raise ValueError(f"{args.out}: expected a procedural home or nothing, found {name}")
+    make_home(args.seed, args.aliasing).save(args.out)
 
 
 def make_home(seed, aliasing=0.3):

@@ -155,11 +155,11 @@ def world_of(name):
 
 def gap_of(name):
     """T_xy [m] and T_theta [degrees] of "0.2/10"."""
-    known = {f"{m:g}/{deg}": (m, deg) for m in GAPS_M for deg in GAPS_DEG}
-    if name not in (*known, *GAPS):
+    known = {words: (m, deg) for m in GAPS_M for deg in GAPS_DEG for words in (f"{m}/{deg}", f"{m:g}/{deg}")}
+    if name not in known:
         raise ValueError(f"--gaps: expected T_xy/T_theta of {', '.join(map(str, GAPS_M))} m and "
                          f"{', '.join(map(str, GAPS_DEG))} degrees, as in {GAPS[0]}, found {name!r}")
-    return known[name.replace(".0/", "/")]
+    return known[name]
 
 
 def agree(out, settings):

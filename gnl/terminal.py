@@ -168,7 +168,7 @@ def guarded(program, run, *args):
     except (ValueError, OSError, MemoryError) as error:
         status, line = 2, str(error).replace("\n", " ")
     except ModuleNotFoundError as error:
-        if error.name.partition(".")[0] in (__package__, "data_gen"):
+        if not error.name or error.name.partition(".")[0] in (__package__, "data_gen"):
             raise
         status, line = 2, f"expected {error.name} to be installed, as `make` does in .venv, found none"
     except BrokenExecutor:
