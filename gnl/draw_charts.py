@@ -61,7 +61,7 @@ def curves(of_world, width=260, height=190):
     low = min(10 * int(shown.min() // 10), high - 10)
     ticks = {i: str(i + 1) for i in range(n)}, {percent: f"{percent} %" for percent in range(low, high + 1, 10)}
     return sheet([lines(plot, *ticks, "checkpoint", width, height, LINES) for plot in plots.values()],
-                 [f"home {world}: right after five looks" for world in plots])
+                 [f"home {world}: share right after five looks" for world in plots])
 
 
 def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), names_px=52, y_name=""):
