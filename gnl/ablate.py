@@ -176,5 +176,5 @@ def filled(page, measured):
         cells = line.split(" | ")
         point = cells[0].removeprefix("| ")
         if line.startswith("| ") and point in words:
-            lines[i] = " | ".join([*cells[:-1], "; ".join(words[point]) + " |"])
+            lines[i] = " | ".join([*cells[:-1], "<br>".join(words[point]) + " |"])
     return "\n".join(lines)

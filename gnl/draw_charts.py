@@ -83,26 +83,33 @@ def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), 
         page.line([spot, (at(x1, y)[0], spot[1])], FAINT)
         page.text((left - 8, at(x0, y)[1]), words, 11, QUIET, "rm")
     for x, words in x_ticks.items():
-        page.text((at(x, y0)[0], height - bottom + 12), words, 11, QUIET, "mm")
+        page.text((at(x, y0)[0], height - bottom + 14), words, 11, QUIET, "mm")
     page.text((left + (width - left - names_px) / 2, height - 10), x_name, 12, QUIET, "mm")
     page.text((8, 10), y_name, 12, QUIET)
     colour_of = dict(zip(of_name, itertools.cycle(USUAL), strict=False)) | dict(colours)
     taken = []  # heights of the names, the upper one first so that they keep the order of their lines
-    for name, (x, y, *band) in sorted(of_name.items(), key=lambda item: -item[1][1][-1]):
-        spots = [at(*spot) for spot in zip(x, y, strict=True)]
+    from_above = sorted(of_name.items(), key=lambda item: -item[1][1][-1])
+    spots_of = {name: [at(*spot) for spot in zip(x, y, strict=True)] for name, (x, y, *_) in from_above}
+    for i, (name, (x, _, *band)) in enumerate(from_above):
+        spots, later = spots_of[name], [spots_of[other] for other, _ in from_above[i + 1:]]
         if band:
             low, high = ([at(*spot) for spot in zip(x, edge, strict=True)] for edge in band)
             page.polygon(high + low[::-1], (*colour_of[name], 50))
         if len(spots) > 1:
-            page.line(spots, colour_of[name], 2)
+            page.line(spots, colour_of[name], 5 if any(_alike(spots, other) for other in later) else 2)
         else:
             page.disc(spots[0], 4, colour_of[name])
         height_of_name = spots[-1][1]
         while any(abs(height_of_name - other) < 13 for other in taken):
             height_of_name += 1
         taken.append(height_of_name)
-        page.text((spots[-1][0] + 6, height_of_name), name, 12, colour_of[name])
+        page.text((spots[-1][0] + (6 if len(spots) > 1 else 9), height_of_name), name, 12, colour_of[name])
     return page.picture()
+
+
+def _alike(spots, others, px=2):
+    """Whether two lines run so close that the one drawn later hides the other, but for a rim."""
+    return len(spots) == len(others) and np.abs(np.subtract(spots, others)).max() < px
 
 
 def histogram(chosen, n=10, width=420, height=180):
@@ -115,5 +122,5 @@ def histogram(chosen, n=10, width=420, height=180):
             page.box(x + 4, top, x + step - 4, height - bottom, BAR)
         page.text((x + step / 2, top - 9), str(chosen.get(i, 0)), 12, INK, "mm")
         page.text((x + step / 2, height - bottom + 12), str(i + 1), 12, QUIET, "mm")
-    page.text((width / 2, height - 10), "checkpoint that adaptation chose, cells", 12, QUIET, "mm")
+    page.text((width / 2, height - 10), "checkpoint; above, in how many cells adaptation chose it", 12, QUIET, "mm")
     return page.picture()

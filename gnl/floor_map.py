@@ -15,7 +15,7 @@ from .strip import cast, slopes
 from .world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M
 
 RIM_PX = 20  # around a map
-NAME_PX, AIR_PX = 13, 5  # names of rooms: size of the letters, room around them
+NAME_PX, SMALL_PX, AIR_PX = 13, 11, 5  # names of rooms: size of the letters, in a narrow room, room around them
 
 
 class Map(Canvas):
@@ -35,6 +35,7 @@ class Map(Canvas):
         super().__init__(width_px, height_px or height + 2 * RIM_PX)
         self.shift = np.array([self.width - width, self.height - height]) / 2
         self.marks, self.named = np.empty((0, 2)), None  # what names keep away from [m], and where they are
+        self.letters = []  # of columns and rows: middle [px] and words
         self._floor()
         self._things()
         start, end = self.at((high[0] - 2, high[1])) - (0, 9), self.at(high) - (0, 9)
@@ -94,6 +95,8 @@ class Map(Canvas):
         """One place: its cell, and the petal of its bearing."""
         low = self.grid.corner_of(place)[:2]
         (x0, y1), (x1, y0) = self.at(low), self.at(low + self.grid.cell_m)
+        corners = low + self.grid.cell_m * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+        self._mark(np.linspace(corners, np.roll(corners, 1, 0), 9).reshape(-1, 2))  # the frame, side by side
         self.box(x0, y0, x1, y1, None, colour, 3)
         self.polygon(self.petal(place), (*colour, 80), colour, 1.5)
 
@@ -114,10 +117,10 @@ class Map(Canvas):
         self.named = self._spots_of_names()
 
     def picture(self):
-        """The map, and above all else the names of its rooms."""
-        top = self.copy()
-        for middle, name in self._spots_of_names() if self.named is None else self.named:
-            top.text(middle, name, NAME_PX, QUIET, "mm", (*PAPER, 190))
+        """The map, and above all else the names of columns, rows and rooms."""
+        top, rooms = self.copy(), self._spots_of_names() if self.named is None else self.named
+        for middle, name, px in self.letters + rooms:
+            top.text(middle, name, px, QUIET, "mm", (*PAPER, 190))
         return Canvas.picture(top)
 
     def _floor(self):
@@ -134,7 +137,7 @@ class Map(Canvas):
                     self.line(self.at(g.origin + np.array(ends) * g.cell_m), (*QUIET, 70))
                 for i in range(size[axis]):
                     middle = self.at(g.origin + (i + 0.5) * along * g.cell_m) + across * [-10, 10]
-                    self.text(middle, name(i), 12, QUIET, "mm")
+                    self.letters.append((middle, name(i), 12))
 
     def _things(self):
         w, hangs, pale = self.world, self.world.z[:, 0] >= ROBOT_HEIGHT_M, self.pale
@@ -154,23 +157,27 @@ class Map(Canvas):
         return self.at(self.world.centre[i] + np.array([ahead + left, left - ahead, -ahead - left, ahead - left]))
 
     def _spots_of_names(self):
-        """The middle [px] and name of each room, where few things or marks are in the way and no other name is."""
+        """Middle [px], name and size of letters of each room, where no other name is and few things or marks are."""
         w, named, marks = self.world, [], cKDTree(self.marks)
         taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
         for room in w.plan.get("rooms", []):
-            name, parts = str(room.get("type", "")), cover_polygon(room["polygon"])
-            size = np.array([text_width(name, NAME_PX) / 2 + AIR_PX, NAME_PX / 2 + AIR_PX]) / self.px_per_m
-            low, high, spots = np.min(room["polygon"], 0), np.max(room["polygon"], 0), w.spots_in(room)
-            spots = spots[(abs(spots[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
-            if not len(spots):
-                continue  # no room for a name
-            along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
-            free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
-            free = free.reshape(-1, 7).min(1)
-            beyond = box_distance(along, *columns(parts)).min(1).reshape(-1, 7).max(1)
-            best = spots[(free - 2 * beyond - 0.05 * np.hypot(*(spots - (low + high) / 2).T)).argmax()]
-            taken = np.append(taken, [[best, size]], 0)
-            named.append((self.at(best), name))
+            name, parts, every = str(room.get("type", "")), cover_polygon(room["polygon"]), w.spots_in(room)
+            middle = (np.min(room["polygon"], 0) + np.max(room["polygon"], 0)) / 2
+            for px in NAME_PX, SMALL_PX:
+                size = np.array([text_width(name, px) / 2 + AIR_PX, px / 2 + AIR_PX]) / self.px_per_m
+                spots = every[(abs(every[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
+                if not len(spots):
+                    break  # no room for a name
+                along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
+                free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
+                free = free.reshape(-1, 7).min(1)
+                beyond = box_distance(along, *columns(parts)).min(1).reshape(-1, 7).max(1)
+                best = (free - 2 * beyond - 0.05 * np.hypot(*(spots - middle).T)).argmax()
+                if not beyond[best]:
+                    break  # it does not reach over a wall
+            if len(spots):
+                taken = np.append(taken, [[spots[best], size]], 0)
+                named.append((self.at(spots[best]), name, px))
         return named
 
 

@@ -83,6 +83,8 @@ def frames(looks, world, grid):
     home = Map(world, *MAP_PX, grid)
     whole = home.copy()
     whole.path([look.pose for look in looks])
+    for look in looks:
+        whole.place(look.answer, canvas.RIGHT)
     whole.names()
     home.named = whole.named  # in all frames where the robot never comes
     panels = [_panels(look, grid) for look in looks]

@@ -81,16 +81,17 @@ def sections(results, costs, settings):
               "; they hold for these homes, this net and these classifiers, which cells share."))
     yield "## Means\n\n" + means(results, methods)
     yield "## Differences in pairs\n\n" + differences(results, methods)
-    yield ("![Ours - MV by gap](gaps.png)\n\n"
+    yield ("![Squares: Ours - MV at each gap, a table for each home](gaps.png)\n\n"
            "*Ours - MV by gap. Blue: Ours was right more often, orange: chance was.*")
     yield "## The paper's own cells\n\n" + papers_differences()
     yield "## How many episodes it takes\n\n" + power(results, methods)
     yield "## The location alone\n\n" + locations(results, methods)
     yield "## What Ours knows by heart\n\n" + by_heart(results)
     yield "## Which checkpoint adaptation chose\n\n" + adaptation(results)
-    yield ("![Learning curves](curves.png)\n\n"
+    yield ("![Lines: right answers by checkpoint, a chart for each home](curves.png)\n\n"
            "*Right after the last look, by checkpoint: Ours with its interval; the others have no checkpoints.*")
-    yield "![Chosen checkpoints](chosen.png)\n\n*In how many cells adaptation chose each checkpoint.*"
+    yield ("![Bars: how many cells chose each checkpoint](chosen.png)\n\n"
+           "*In how many cells adaptation chose each checkpoint.*")
     yield "## What it costs\n\n" + cost(costs)
     yield "## Table I\n\n" + whole_table(results, methods)
 

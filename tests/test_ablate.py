@@ -242,7 +242,7 @@ def test_a_run_measures_ours_and_the_points_that_are_asked_for_in_every_cell_onc
     assert lines[1] == "| edges | ? |"
     expected = ["k = 1", "k = 16", "k = 64", *(f"k = 64, alpha = 1{seed}" for seed in (
         "", ", seed 1", ", seed 2", ", seed 3", ", seed 4"))]
-    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("; ")] == expected
+    assert [part.split(":")[0] for part in lines[2].split(" | ")[1].split("<br>")] == expected
 
 
 def test_runs_of_another_net_are_refused_before_new_ones_are_compared_with_them(tmp_path, parts, monkeypatch, capsys):

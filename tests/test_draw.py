@@ -198,8 +198,7 @@ def test_names_of_rooms_do_not_touch_one_another(real_home, width):
     plan = floor_map.Map(real_home, width, grid=PlaceGrid(real_home))
     plan.names()
     assert len(plan.named) == len(real_home.plan.get("rooms", [])) or width == 160
-    boxes = [(middle, np.array([canvas.text_width(name, floor_map.NAME_PX), floor_map.NAME_PX]) / 2)
-             for middle, name in plan.named]
+    boxes = [(middle, np.array([canvas.text_width(name, px), px]) / 2) for middle, name, px in plan.named]
     for i, (middle, half) in enumerate(boxes):
         for other, its_half in boxes[:i]:
             assert (abs(middle - other) >= half + its_half + floor_map.AIR_PX).any()
@@ -210,8 +209,8 @@ def test_names_of_rooms_that_lie_open_to_one_another_keep_to_their_rooms():
     plan = floor_map.Map(flat, 448)
     plan.names()
     rooms = {room["type"]: plan.at(room["polygon"]) for room in flat.plan["rooms"]}
-    for middle, name in plan.named:
-        half = canvas.text_width(name, floor_map.NAME_PX) / 2
+    for middle, name, px in plan.named:
+        half = canvas.text_width(name, px) / 2
         assert rooms[name][:, 0].min() < middle[0] - half
         assert rooms[name][:, 0].max() > middle[0] + half
 
@@ -222,19 +221,44 @@ def test_names_of_rooms_that_lie_open_to_one_another_keep_to_their_rooms():
 def test_names_of_rooms_keep_away_from_what_is_drawn(world, draw_at):
     plan = floor_map.Map(world, 640)
     plan.names()
-    (before, name), = plan.named
+    (before, name, px), = plan.named
     there = [(before - plan.at([0, 0])) / plan.px_per_m * [1, -1]]
     draw_at(plan, np.pad(there, ((0, 2), (0, 1)), "edge"))
     assert plan.named[0][0] is before  # settled is settled
     plan.names()
-    (after, _), = plan.named
-    assert (abs(after - before) > [canvas.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2]).any()
+    (after, *_), = plan.named
+    assert (abs(after - before) > [canvas.text_width(name, px) / 2, px / 2]).any()
+
+
+def test_names_of_rooms_keep_away_from_the_frame_of_a_place():
+    flat = World.load(FLAT)
+    plan = floor_map.Map(flat, 600, grid=PlaceGrid(flat))
+    for place in range(0, plan.grid.n_places, plan.grid.n_bearings):
+        plan.place(place, canvas.BELIEF)
+        plan.names()
+        corner = plan.grid.corner_of(place)[:2]
+        (left, bottom), (right, top) = plan.at(corner), plan.at(corner + plan.grid.cell_m)
+        for (x, y), name, px in plan.named:
+            half = canvas.text_width(name, px) / 2
+            covers = sum(x - half < side < x + half and top < y < bottom for side in (left, right))
+            assert not covers, (place, name)
+        plan = floor_map.Map(flat, 600, grid=plan.grid)
+
+
+def test_names_are_written_smaller_where_a_room_is_too_narrow_for_them():
+    widths = {}
+    for metres in 2.5, 1.2, 0.9:
+        plan = floor_map.Map(World(room(size=(metres, 6.0), rooms=[
+            {"type": "corridor", "polygon": [[0, 0], [metres, 0], [metres, 6], [0, 6]]}])), height_px=340, width_px=400)
+        plan.names()
+        (_, _, widths[metres]), = plan.named
+    assert widths == {2.5: floor_map.NAME_PX, 1.2: floor_map.SMALL_PX, 0.9: floor_map.SMALL_PX}
 
 
 def test_names_of_rooms_stand_above_all_that_is_drawn(world):
     plan = floor_map.Map(world, 640)
     plan.names()
-    (middle, name), = plan.named
+    (middle, name, _), = plan.named
     plan.box(0, 0, plan.width, plan.height, canvas.ROBOT)
     half = canvas.text_width(name, floor_map.NAME_PX) / 2, floor_map.NAME_PX / 2
     picture = plan.picture().crop((*(middle - half), *(middle + half)))
@@ -342,6 +366,7 @@ def test_a_map_names_its_cells_as_a_chess_board_does_and_its_scale_is_two_metres
     monkeypatch.setattr(canvas.Canvas, "line", lambda _, points, *how: lines.append(points))
     home = World(room(size=(6.0, 4.0)))
     plan = floor_map.Map(home, 640, grid=PlaceGrid(home))
+    plan.picture()
     assert set(words) == {"A", "B", "C", "1", "2", "2 m"}
     assert words["A"][0] < words["B"][0] < words["C"][0]  # columns to the right
     assert words["1"][1] > words["2"][1]  # rows upwards

@@ -153,6 +153,17 @@ def test_lines_begin_and_end_at_their_ticks_and_one_point_is_a_dot(written):
     assert at["y"][1] < at["1"][1]
 
 
+def test_a_line_beneath_another_shows_as_its_rim_and_else_lines_are_thin():
+    def rows(colour, other):
+        flat = {"first": ((0, 1), (0.5, 0.5)), "second": ((0, 1), (other, other))}
+        picture = draw_charts.lines(flat, {0: "0", 1: "1"}, {0: "0", 1: "1"}, "x")
+        return (abs(np.array(picture)[:, 200].astype(int) - colour).sum(1) < 100).sum()
+
+    for colour in draw_charts.USUAL[:2]:
+        assert rows(colour, 0.501) >= 1  # at one height both are seen
+        assert 1 <= rows(colour, 0.8) <= 2
+
+
 def test_lines_take_the_usual_colours_in_turn():
     picture = np.array(draw_charts.lines({"a": ((0, 1), (0.2, 0.2)), "b": ((0, 1), (0.8, 0.8))}, {0: "0", 1: "1"},
                                          {0: "0", 1: "1"}, "x"))
@@ -170,7 +181,7 @@ def test_names_of_gaps_stand_beside_their_fields_and_ticks_beside_their_values(w
     at = {words: (x, y) for x, y, words in written}
     assert at["1"][0] < at["2"][0] < at["3"][0]
     assert at["50 %"][1] == pytest.approx(at["Ours"][1])
-    assert "home 800: right after five looks" in at
+    assert "home 800: share right after five looks" in at
 
 
 def test_a_small_loss_is_orange_too():

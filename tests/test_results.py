@@ -86,7 +86,7 @@ def test_what_is_said_of_seed_1_is_what_its_cells_say(tmp_path):
         assert row(told, name)[:2] == [row(REPORT, name)[0], row(report, name)[0]]
     for part, at in ((REPORT, 0), (report, 1)):
         homes = row(part, "Ours - MV")[2:]
-        assert [row(told, f"home {world}")[at] for world in (800, 801, 809)] == homes
+        assert [row(told, f"Ours - MV, home {world}")[at] for world in (800, 801, 809)] == homes
         assert row(told, "Ours - MV, location alone")[at] == row(part.partition("## The location alone")[2],
                                                                  "Ours - MV")[1]
 

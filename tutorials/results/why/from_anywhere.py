@@ -33,19 +33,20 @@ def measure(_i, task, starts):
         line += f"  {mean:+5.1f} [{low:+5.1f}, {high:+5.1f}]"
     actions, by_chance = (record.actions for record in records)  # of the tests
     share = np.bincount(actions.ravel(), minlength=N_ACTIONS) / actions.size
-    line += f"  undone {undone(actions):.0%} {2 * share[LEFT] * share[RIGHT]:.0%} {undone(by_chance):.0%}"
+    line += f"  {undone(actions):.0%} {2 * share[LEFT] * share[RIGHT]:.0%} {undone(by_chance):.0%}"
     states = reciprocal_ranks(senses.scores(anywhere, rng))
     one, two = (planners.best_actions(store.q_values(states), rng) for store in (ours, again))
     by_lot = np.bincount(one, minlength=N_ACTIONS) @ np.bincount(two, minlength=N_ACTIONS) / n ** 2
-    return line + f"  alike {(one == two).mean():.0%} {by_lot:.0%}"
+    return line + f"  {(one == two).mean():.0%} {by_lot:.0%}"
 
 
 def main(cells=SIX, **where):
     """Measure the cells, and print."""
     lines = in_cells(measure, cells, **where)
-    print(f"{'ahead of MV, from':<22}training starts        anywhere               tests")
+    starts = "training starts", "anywhere", "tests"
+    print(f"{'ahead of MV, from':<17}", *(f"{words:<21}" for words in starts), f"{'undone':<11}", "alike", sep="  ")
     for cell, line in zip(cells, lines, strict=True):
-        print(f"{cell.name:<20}{line}")
+        print(f"{cell.name.rpartition('-seed')[0]:<17}{line}")
 
 
 if __name__ == "__main__":
