@@ -96,7 +96,7 @@ def test_what_pages_say_of_starts_of_training_is_in_the_report():
     mean, interval = row(part, "all")[1].split(" ", 1)
     for page in ("README.md", "tutorials/10_active_localization.md"):
         assert re.search(rf"{re.escape(mean)}\s+{re.escape(interval)}", (ROOT / page).read_text())
-    told = (RESULTS / "README.md").read_text().partition("**Ours fits where it learned.**")[2]
+    told = (RESULTS / "README.md").read_text().partition("**Ours does better where it learned.**")[2]
     told = told.partition("\n\nThe wider")[0]
     for name in ("all", "T_xy 0.2 m", "T_xy 0.6 m", "T_xy 1.0 m"):
         tests, known, _, known_of_scan = row(part, name)
