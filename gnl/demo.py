@@ -180,7 +180,7 @@ def print_costs(senses):
 def draw_stages(folder, senses, grid, starts, generator):
     """A picture of the home, and of each stage for the start from which there is most to see.
 
-    It is one of those of which the net gets as many pixels right as in the mean: others would not show what it can do.
+    It is one of those of which the net gets as many pixels right as on average: others would not show what it can do.
     """
     world, size = senses.world, segnet.SIZE_PX
     small, true = render(world, starts, copy.deepcopy(generator), size, senses.noise)

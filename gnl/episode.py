@@ -176,7 +176,7 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
 def race(senses, robot, grid, starts, seed, rules=None):
     """Fixed action sequences and what they are worth, over `starts` (n, 3): (41, L), (41,) for L = 4, the winner first.
 
-    A sequence is worth the belief that it leaves in the true place, in the mean. Of 41 the luckiest looks best, so they
+    A sequence is worth the belief that it leaves in the true place, on average. Of 41 the luckiest looks best, so they
     race: after each round the best third goes on, from three times as many new starts, the same for all. Those that
     repeat one action stay to the end: few others beat them, and options.py asks what they are worth.
     """

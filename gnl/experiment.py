@@ -6,7 +6,7 @@ are tested from the same starts with the same luck, so that they can be compared
     SV     the first view alone               MV     chance           Scan   the best fixed sequence of actions
     Ours   the paper's NNQL                   DA     Ours at the checkpoint that is best on a few validation episodes
     Oracle Ours at the checkpoint that is best on the tests themselves: that is cheating, and shows what DA could gain
-    Ours+  an option, gone on with (options.py; not in the paper)
+    Ours+  an action chosen once and repeated (options.py; not in the paper)
 
 SV is the first look of MV; Ours, DA and Oracle are chosen among the checkpoints (outcomes.py).
 MV, Scan and Ours are tested once more, from some of the starts of training: what has Ours learned by heart?

@@ -1,4 +1,4 @@
-"""Options: an action that is gone on with, chosen once from the first view (Ours+, not in the paper).
+"""Options: an action chosen once, from the first view, and repeated to the end (Ours+, not in the paper).
 
 NNQL chooses anew after every look, from the latest view alone. It cannot know what it did last and often undoes it.
 An option (Sutton, Precup and Singh 1999) never does: it is one action, done again and again. What options are worth is
@@ -8,7 +8,7 @@ fixed sequences, of which the options are three:
     V_d(s, a) = mean over the k nearest (s', a) of [ r / L + V_{d-1}(s'', a) ],     V_0 = 0
     Q(s, a)   = V_L(s, a) - mean of V_L(., a) over first views + worth of a in the race
 
-    s, s'  a state (B, K), a remembered one          a   the action that is gone on with
+    s, s'  a state (B, K), a remembered one          a   the action that is repeated
     s''    what was seen after a was done in s'      d   steps to go, of L
     r      1 / rank of the true place in s'': dense and less noisy than right or wrong, which is mostly luck
     k      many, for values differ little from view to view, and what each of them says is noisy
@@ -75,7 +75,7 @@ class Options:
                          for seen, ahead in zip(self.seen, self.ahead, strict=True)], 1)
 
     def q_values(self, states):
-        """Worth of each action in the race, and how much more than in the mean lies ahead here: (B, K) -> (B, A)."""
+        """Worth of each action in the race, and how much more than on average lies ahead here: (B, K) -> (B, A)."""
         return self.values(states) + self.offset
 
 

@@ -35,7 +35,7 @@ def scan(sequence):
 
 
 def greedy(nnql):
-    """The action of the greatest Q-value (Ours); equal values are drawn among by chance."""
+    """The action of the greatest Q-value (Ours); among equal values one is drawn."""
     def plan(_step, states, rng):
         return best_actions(nnql.q_values(states), rng)
     return plan
@@ -54,7 +54,7 @@ def go_on(plan):
 
 
 def explore(nnql, epsilon):
-    """Greedy, but by chance in a share epsilon (B,) of the cases: how NNQL gathers experience."""
+    """Greedy, but at random in a share epsilon (B,) of the cases: how NNQL gathers experience."""
     def plan(_step, states, rng):
         q = nnql.q_values(states)
         best = best_actions(q, rng)
