@@ -50,7 +50,8 @@ def furnish(room, kind, keep_clear, leaves, key):
             box = put(piece, rule, other, room, rng)
             if name != "carpet" and "carpet" in latest and overlap(box, latest["carpet"]):
                 box = box._replace(z0=latest["carpet"].height)
-            if not inside(room, box, MARGIN_M) or hits(box, placed + keep_clear + fronts * (rule in ALONE)):
+            taken = placed + keep_clear + (fronts if rule in ALONE else [])
+            if not inside(room, box, MARGIN_M) or hits(box, taken):
                 continue
             if box.z0 < ROBOT_HEIGHT_M and box.z0 + box.height > STEP_M:  # it is in the robot's way
                 front = before(box)
@@ -58,7 +59,8 @@ def furnish(room, kind, keep_clear, leaves, key):
                 if (rule in AT_WALL and hits(front, placed)) or not in_one_part(left_over):
                     continue
                 clearance = left_over
-                fronts += [front] * (rule in AT_WALL)
+                if rule in AT_WALL:
+                    fronts.append(front)
             placed.append(box)
             latest[name] = box
             objects.append(as_object(name, box))

@@ -18,7 +18,7 @@ from gnl.files import check_folder, load_arrays, save_arrays
 from gnl.floor_map import Map
 from gnl.floor_plan import LARGEST_HOME_M
 from gnl.gaps import poses_beyond
-from gnl.learned import code, digest
+from gnl.learned import digest, digest_of_code
 from gnl.terminal import Stage, count, processes
 from gnl.world import World
 
@@ -42,7 +42,8 @@ def add_arguments(parser):
 def run(args):
     """Homes and start poses of cells of Table I, of those that lack one or the other."""
     sizes = {"training": args.training, "tests": args.tests, "validation": args.validation}
-    made_by = sizes | {"code": digest([code(), code(modules=["gaps"]), code(Path(__file__).parent, MODULES)])}
+    made_by = sizes | {"code": digest([digest_of_code(), digest_of_code(modules=["gaps"]),
+                                       digest_of_code(Path(__file__).parent, MODULES)])}
     for name, size in (*sizes.items(), ("jobs", args.jobs)):
         if size < 1:
             raise ValueError(f"--{name}: expected at least 1, found {size}")
@@ -105,8 +106,8 @@ def draw_starts(world, t_xy_m, t_theta_rad, n_training, n_tests, n_validation, r
 
 def picture(world, starts, n=400, width_px=720):
     """A map of the test starts and of n of the training starts, each a little arrow."""
-    plan, training = Map(world, width_px), starts["training"][:n]
-    plan.starts(training, BELIEF)
-    plan.starts(starts["tests"], ROBOT)
-    return sheet([plan.picture()], [f"orange: all {len(starts['tests'])} test starts; "
-                                    f"violet: {len(training)} of {len(starts['training'])} training starts"])
+    canvas, training = Map(world, width_px), starts["training"][:n]
+    canvas.starts(training, BELIEF)
+    canvas.starts(starts["tests"], ROBOT)
+    return sheet([canvas.picture()], [f"orange: all {len(starts['tests'])} test starts; "
+                                      f"violet: {len(training)} of {len(starts['training'])} training starts"])

@@ -11,7 +11,7 @@ import numpy as np
 from gnl.camera import render
 from gnl.classes import N_CLASSES
 from gnl.files import check_file, load_arrays, save_arrays
-from gnl.learned import code, digest
+from gnl.learned import digest, digest_of_code
 from gnl.paper import WORLDS
 from gnl.photo import check_noise
 from gnl.segnet import SIZE_PX
@@ -21,7 +21,6 @@ from .rooms import make_home
 
 # DIFFERS: the net learns from homes of the same kind as those where it is used; the paper's from photographs (ADE20K).
 LEAST_KINDS, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
-
 
 MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # that decide what there is to see
 
@@ -39,7 +38,7 @@ def add_arguments(parser):
 def run(args):
     """Views of many homes and their true labels, unless the file has just these already."""
     made_by = {"homes": args.homes, "views": args.views, "seed": args.seed, "noise": args.noise, "kinds": args.kinds,
-               "code": digest([code(), code(Path(__file__).parent, MODULES)])}
+               "code": digest([digest_of_code(), digest_of_code(Path(__file__).parent, MODULES)])}
     check_file("out", args.out)
     if Path(args.out).exists():
         there = load_arrays(args.out)[1]

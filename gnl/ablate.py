@@ -18,16 +18,16 @@ import numpy as np
 from . import episode, learned, nnql, planners
 from .choices import CHOICES, OURS, TRUE_LABELS
 from .compare import in_points, paired_difference
-from .experiment import Cell, costs, costs_of, made_from, now, to_bytes
-from .files import check_folder, load_json, write_whole
+from .experiment import Cell, costs, costs_path, made_from, now
+from .files import check_folder, load_json, save_json, write_whole
 from .gaps import poses_beyond
 from .groundwork import load_starts, prepare, taught_net
-from .outcomes import answers, outcomes
+from .outcomes import answers, outcome_of
 from .paper import WORLDS
 from .places import PlaceGrid
 from .report import markdown
 from .robot import N_ACTIONS, Robot
-from .table import Settings, agree, check_parts, finished, path_of, run_jobs
+from .table import Settings, agree, cell_path, check_parts, finished, run_jobs
 from .terminal import executor
 
 SETTINGS = Settings(episodes=3000, tests=400, gcn_views=5000, gcn_epochs=25, gcn_batch=128, gcn_rate=0.008)
@@ -59,13 +59,13 @@ def run(args):
     agree(out, asdict(SETTINGS))
     jobs = {name_of(choice, cell): (choice, cell) for choice in chosen for cell in CELLS}
     todo = {name: job for name, job in jobs.items() if not finished(out, name, load)}
-    write_whole(out / "settings.json", to_bytes(asdict(SETTINGS)))
+    save_json(out / "settings.json", asdict(SETTINGS))
     if todo:
         with executor(args.jobs) as pool:
             senses = dict(prepare(out, SETTINGS, CELLS, args.jobs, pool))
             for name, (_, cell) in jobs.items():
                 if name not in todo:
-                    check_parts(path_of(out, name), senses[cell.world])
+                    check_parts(cell_path(out, name), senses[cell.world])
             starts = {cell: load_starts(out, cell, SETTINGS) for cell in CELLS}
             of_nets = {(choice.point, choice.other): choice.of_net for choice, _ in todo.values() if choice.of_net}
             nets = {name: taught_net(out, SETTINGS, **options) for name, options in of_nets.items()}
@@ -90,13 +90,13 @@ def _read_page(path):
 
 def load(path):
     """Outcomes and costs of a run from its two files; ValueError if they are not whole."""
-    def look(result):
+    def check(result):
         if result["name"] != path.stem:
             raise ValueError(f"those of {result['name']}")
         answers(result["tests"]["MV"]), answers(result["tests"]["Ours"])
 
-    return (load_json(path, "the outcomes of a run", look),
-            load_json(costs_of(path), "the costs of a run"))
+    return (load_json(path, "the outcomes of a run", check),
+            load_json(costs_path(path), "the costs of a run"))
 
 
 def name_of(choice, cell):
@@ -123,8 +123,8 @@ def measure(choice, cell, senses, starts, settings, net=None):
         store = nnql.NNQL(grid.n_places + choice.n_more, N_ACTIONS, **choice.store)
         with in_place(choice.of_training):
             episode.train_nnql(senses, robot, grid, training, learning, choice.rules, store=store)
-        tests = {name: outcomes(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
-                                                      rules=choice.rules))
+        tests = {name: outcome_of(grid, episode.run_all(senses, robot, grid, plan, starts["tests"], testing,
+                                                        rules=choice.rules))
                  for name, plan in {"MV": planners.chance, "Ours": planners.greedy(store)}.items()}
     result = {"name": name_of(choice, cell), "made from": parts, "tests": tests}
     return result, costs(senses, began, sum(map(len, store.values)))
@@ -149,7 +149,7 @@ def in_place(constants):
 def effects(out, chosen):
     """What MV and Ours get right more often with each choice than beside it, in points: rows of words."""
     def right(choice, method):
-        parts = [json.loads(path_of(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
+        parts = [json.loads(cell_path(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
         return np.concatenate([answers(part) for part in parts])
 
     rows = []

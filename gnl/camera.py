@@ -14,7 +14,7 @@ import numpy as np
 from .classes import CEILING, FLOOR
 from .photo import check_noise, photograph
 from .places import check_poses
-from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim
+from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim_slope
 
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
@@ -38,8 +38,8 @@ class Surfaces:
     run_ray: np.ndarray  # (R,) int, view * C + column
     run_length: np.ndarray  # (R,) int, pixels
 
-    def labels(self, world):
-        """Class and length of the runs."""
+    def label_runs(self, world):
+        """Class and length of each run."""
         of_box = np.append(world.label, np.array([CEILING, FLOOR], np.uint8))
         return of_box[self.face // FACES].take(self.run_surface), self.run_length
 
@@ -60,7 +60,7 @@ def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
         seen = poses[part][wanted[part]]
         surfaces = look(world, seen, size)
         rgb.append(photograph(world, seen, surfaces, size, HEIGHT_M, rng, noise, wanted[part]))
-        runs.append(surfaces.labels(world))
+        runs.append(surfaces.label_runs(world))
     return np.concatenate(rgb), _paint(runs, size)
 
 
@@ -68,7 +68,7 @@ def true_labels(world, poses, size=SIZE_PX):
     """True labels alone: poses (B, 3) -> (B, H, H) uint8."""
     poses = _check(poses, size)
     parts = _chunks(len(poses), size, 2 * RAYS_AT_ONCE)
-    return _paint([look(world, poses[part], size).labels(world) for part in parts], size)
+    return _paint([look(world, poses[part], size).label_runs(world) for part in parts], size)
 
 
 def _check(poses, size):
@@ -91,7 +91,7 @@ def look(world, poses, size=SIZE_PX):
 
 def row_of(z, w, size):
     """Row coordinate y [px] of height z [m] at inverse depth w [1/m]."""
-    return (1 - (z - HEIGHT_M) * w / rim()) * (size / 2)
+    return (1 - (z - HEIGHT_M) * w / rim_slope()) * (size / 2)
 
 
 def _pile(world, strip, size):
@@ -142,7 +142,7 @@ def _visible(pile, n_rays, size, n_boxes):
 
     # Mostly the last surface of a column, a wall, covers the row where ceiling and floor would meet.
     bare = (count == 0) | (np.append(begin, 0).take(last) > half) | (np.append(end, 0).take(last) < half)
-    # An edge is a number: its last six digits are the bit, the others the pixel. Short numbers are sorted faster.
+    # An edge is one number, pixel * 64 + bit: sorted, edges run down the columns. Short numbers are sorted faster.
     short = np.int32 if n_rays * H < 1 << 25 else np.int64
     start, top = ((ray * H << 6) + bit).astype(short), ((np.arange(n_rays + 1) * H << 6) + NO_SURFACE).astype(short)
     edges = start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)
@@ -153,7 +153,7 @@ def _visible(pile, n_rays, size, n_boxes):
     on, begin = on.take(run), pixel.take(np.append(run, -1))
     begin, length = begin[:-1], begin[1:] - begin[:-1]
     run_ray = begin // H
-    lowest = np.bitwise_count(on ^ (on - 1)) - 1  # the digits up to the lowest that is on, less that one
+    lowest = np.bitwise_count(on ^ (on - 1)) - 1  # on ^ (on - 1): the lowest bit that is on and all below it
     surface = first.take(run_ray) + lowest
     back = np.flatnonzero(lowest == NO_SURFACE)
     surface[back] = S + (begin[back] - run_ray[back] * H >= half)
@@ -164,4 +164,4 @@ def _visible(pile, n_rays, size, n_boxes):
 def _chunks(n_views, size, n_rays=RAYS_AT_ONCE):
     """Slices of the views, as many in each as stay near the processor; one even of no views."""
     step = max(1, n_rays // size)
-    return [slice(i, min(i + step, n_views)) for i in range(0, max(1, n_views), step)]
+    return [slice(i, i + step) for i in range(0, max(1, n_views), step)]

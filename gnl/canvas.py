@@ -1,4 +1,4 @@
-"""Paper to draw on; all is drawn twice as large and then shrunk, so that lines are smooth.
+"""Paper to draw on; all is drawn four times as large and then shrunk, so that lines are smooth.
 
     px   of the finished picture, (column, row), row 0 at the top
 """

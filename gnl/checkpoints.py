@@ -21,7 +21,7 @@ class Checkpoints:
     def __len__(self):
         return len(self.entries)
 
-    def take(self, values):
+    def add(self, values):
         """Add a checkpoint: values (n,) of each action."""
         entry = []
         for now, before in zip(values, self._latest, strict=True):
@@ -61,7 +61,7 @@ class Checkpoints:
             born, n_changed, changed, to = (arrays[f"{name}{a}"] for name in cls.NAMES)
             if not n_changed.sum() == len(changed) == len(to):
                 raise ValueError(f"{n_changed.sum()} changes counted, {len(changed)} and {len(to)} there")
-            changed, to = (np.split(log, np.cumsum(n_changed)[:-1]) for log in (changed, to))
+            changed, to = (np.split(part, np.cumsum(n_changed)[:-1]) for part in (changed, to))
             # Of no checkpoints at all np.split makes one empty piece.
             by_action.append(list(zip(born.tolist(), changed, to, strict=False)))
         self.entries = list(map(list, zip(*by_action, strict=True)))

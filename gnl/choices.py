@@ -43,8 +43,8 @@ class Choice:
     of_net: dict = field(default_factory=dict)  # other options of `python -m data_gen views`, for a net of its own
     anew: bool = False  # the GCN is learned anew; the next two are how
     of_gcn: dict = field(default_factory=dict)  # other arguments of learned.learn_places
-    views_beyond: Callable | None = None  # it sees views from beyond the gap from the tests, as gaps.beyond_gap, alone
-    starts_beyond: Callable | None = None  # NNQL learns from starts beyond this gap from the tests, and not ours
+    views_beyond: Callable | None = None  # the gap from the tests beyond which its views lie; None: anywhere
+    starts_beyond: Callable | None = None  # the gap beyond which NNQL's starts lie; None: our starts
     luck: int = 0  # which other seed of NNQL's training, and of the classifier's if it learns anew; 0: ours
 
 

@@ -57,7 +57,7 @@ def episodes_needed(difference, std):
     std : standard deviation of d over pairs; of two unpaired methods of p and q right sqrt(p (1 - p) + q (1 - q))
     """
     if not difference:
-        raise ValueError("difference: expected another than 0, which no number of pairs would show")
+        raise ValueError("difference: expected a number other than 0, which no number of pairs would show")
     return int(np.ceil(((Z95 + Z80) * std / difference) ** 2))
 
 

@@ -61,36 +61,36 @@ def run(args):
 def play(args, scale, helper):
     """The stages one by one; `helper` is an executor of one process for the other core."""
     world = World.load(args.plan)
-    grid, robot = PlaceGrid(world), Robot(world)
+    robot, grid = Robot(world), PlaceGrid(world)
     x0, y0, x1, y1 = world.bounds
     print(f"{world.name}: {x1 - x0:.1f} x {y1 - y0:.1f} m, {len(world.plan.get('objects', []))} objects, "
           f"{grid.n_places} places ({grid.nx} x {grid.ny} cells x {grid.n_bearings} bearings)")
     if lost := world.out_of_reach():
         print(f"no robot gets into: {', '.join(lost)} (is there a doorway?)")
-    senses, store, sequence = learn(args, scale, helper, world, grid, robot)
-    starts = world.free_poses(scale.tests, rng(args, 5))
+    senses, store, sequence = learn(args, scale, helper, world, robot, grid)
+    starts = world.free_poses(scale.tests, stream(args, 5))
     plans = {"MV": planners.chance, "Scan": planners.scan(sequence), "Ours": planners.greedy(store)}
-    test(args, senses, grid, robot, plans, starts)
-    show(args, senses, grid, robot, store, starts)
+    test(args, senses, robot, grid, plans, starts)
+    show(args, senses, robot, grid, store, starts)
 
 
-def learn(args, scale, helper, world, grid, robot):
+def learn(args, scale, helper, world, robot, grid):
     """Learn what is not in its file yet, and say how good it is: Senses, the NNQL store, the sequence of Scan."""
     parts = Path(args.out) / "learned"
     known = set(parts.glob("*.npz"))
 
-    def done(stage, text, now=""):
+    def done(stage, text, if_new=""):
         new = set(parts.glob(f"{stage.name}-*.npz")) - known
-        stage.done(text + (now if new else ", learned before"))
+        stage.done(text + (if_new if new else ", learned before"))
 
     stage = Stage("net")
     views, views_made_by = learned.load_views(args.views)
-    n_known, (word, _, seed) = views_made_by.get("homes", 0), world.name.partition("-")
-    if word == "home" and seed.isdecimal() and seed == str(int(seed)) and int(seed) < n_known:
+    n_known = views_made_by.get("homes", 0)
+    if world.name in (f"home-{seed}" for seed in range(n_known)):
         raise ValueError(f"{args.plan}: expected a home that the net does not learn from (HOUSE from {n_known} on), "
                          f"found {world.name}; a home of your own needs another name")
     net = learned.segmentation_net(parts, views, views_made_by, scale.net_epochs, args.seed, stage)
-    seen, true = render(world, world.free_poses(200, rng(args, 8)), rng(args, 9), segnet.SIZE_PX, args.noise)
+    seen, true = render(world, world.free_poses(200, stream(args, 8)), stream(args, 9), segnet.SIZE_PX, args.noise)
     right, overlap = segnet.accuracy(segnet.predict(net, seen), true)
     done(stage, f"labels of this unseen home: {right:.0%} of the pixels, mean IoU {overlap:.2f}")
 
@@ -102,8 +102,8 @@ def learn(args, scale, helper, world, grid, robot):
     how = {"epochs": scale.gcn_epochs, "batch": scale.gcn_batch, "rate": 2 * gcn.RATE * scale.gcn_batch / gcn.BATCH}
     senses.gcn = learned.place_classifier(parts, senses, grid, scale.gcn_views, args.seed, settings, helper, stage,
                                           **how)
-    poses = world.free_poses(500, rng(args, 3))
-    first, third = learned.top_places(senses.gcn, senses.look_around(poses, rng(args, 4)), grid.place_of(poses))
+    poses = world.free_poses(500, stream(args, 3))
+    first, third = learned.top_places(senses.gcn, senses.look_around(poses, stream(args, 4)), grid.place_of(poses))
     done(stage, f"place from one new view: right {first:.0%}, in the first three {third:.0%}")
 
     stage = Stage("nnql")
@@ -117,7 +117,7 @@ def learn(args, scale, helper, world, grid, robot):
     return senses, store, sequence
 
 
-def test(args, senses, grid, robot, plans, starts):
+def test(args, senses, robot, grid, plans, starts):
     """Let every method start from the same poses, and print what became of it."""
     stage = Stage("test")
     senses.seconds, senses.views = {}, 0
@@ -132,10 +132,10 @@ def test(args, senses, grid, robot, plans, starts):
     print_costs(senses)
 
 
-def show(args, senses, grid, robot, store, starts):
+def show(args, senses, robot, grid, store, starts):
     """Draw the stages and an episode."""
     stage, folder = Stage("draw"), Path(args.pictures or Path(args.out, "demo"))
-    draw_stages(folder, senses, grid, starts, rng(args, 7))
+    draw_stages(folder, senses, grid, starts, stream(args, 7))
     looks = telling_episode(senses, robot, grid, store, starts, args.seed, stage)
     replay.save_gif(looks, senses.world, grid, folder / "episode.gif")
     stage.done(f"home, view, labels, strip, graph, ranks and episode.gif in {folder}")
@@ -152,9 +152,9 @@ def check(args):
     check_folder("--pictures", args.out if args.pictures is None else args.pictures)
 
 
-def rng(args, stream):
+def stream(args, number):
     """An independent stream of random numbers for each use; 1 and 2 are those of learned.py."""
-    return np.random.default_rng([args.seed, stream])
+    return np.random.default_rng([args.seed, number])
 
 
 def print_table(records):
@@ -177,18 +177,18 @@ def print_costs(senses):
     print("  " + ", ".join(f"{stage} {ms:.2f}" for stage, ms in cost.items()))
 
 
-def draw_stages(folder, senses, grid, starts, generator):
+def draw_stages(folder, senses, grid, starts, rng):
     """A picture of the home, and of each stage for the start from which there is most to see.
 
     It is one of those of which the net gets as many pixels right as on average: others would not show what it can do.
     """
     world, size = senses.world, segnet.SIZE_PX
-    small, true = render(world, starts, copy.deepcopy(generator), size, senses.noise)
+    small, true = render(world, starts, copy.deepcopy(rng), size, senses.noise)
     right = np.mean(_labels(senses, small, true) == true, (1, 2))
     best = np.where(right >= right.mean(), np.diff(scene_graph(true).starts), -1).argmax()
     pose = starts[best:best + 1]
-    large, _ = render(world, pose, copy.deepcopy(generator), noise=senses.noise)  # the same light in both sizes
-    small, true = render(world, pose, generator, size, senses.noise)
+    large, _ = render(world, pose, copy.deepcopy(rng), noise=senses.noise)  # the same light in both sizes
+    small, true = render(world, pose, rng, size, senses.noise)
     labels = _labels(senses, small, true)
     graph = scene_graph(labels)
     values = reciprocal_ranks(senses.gcn.scores(graph))[0]

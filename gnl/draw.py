@@ -27,7 +27,7 @@ from .canvas import (
 from .classes import CLASSES, N_CLASSES, OTHER, PALETTE
 from .files import write_whole
 from .floor_map import Map, column_name, row_name
-from .scene_graph import VIEW_PX, words_in_words
+from .scene_graph import VIEW_PX, unpack_words
 
 SIZES = ("small", "medium", "large")
 LOCATIONS = ("upper left", "upper centre", "upper right", "left", "centre", "right",
@@ -46,18 +46,18 @@ FREE, HIDDEN = N_CLASSES, N_CLASSES + 1  # what a strip shows besides classes
 
 def home(world, width_px=640, grid=None, starts=(), shown=None):
     """A home from above, the cells of its places, poses as little arrows, one of them `shown`; below what is what."""
-    plan, marks = Map(world, width_px, grid=grid), {}
+    canvas, marks = Map(world, width_px, grid=grid), {}
     if len(starts):
-        plan.starts(starts, QUIET)
+        canvas.starts(starts, QUIET)
         marks["start"] = f"the {len(starts)} starts of the test"
     if shown is not None:
-        plan.sight(shown)
-        plan.robot(shown)
+        canvas.sight(shown)
+        canvas.robot(shown)
         marks |= {"robot": "a robot", "sight": "what it sees in the next pictures"}
-    if plan.pale.any():
+    if canvas.pale.any():
         marks["pale"] = "pale: hangs overhead or lies flat"
     keys = [legend(np.unique(world.label))] + ([legend([], marks)] if marks else [])
-    return sheet([plan.picture(), *keys], columns=1, margin=4)
+    return sheet([canvas.picture(), *keys], columns=1, margin=4)
 
 
 def view(rgb, size_px=256):
@@ -126,7 +126,7 @@ def graph(graphs, picture, full=True):
     canvas.paste(Image.blend(picture, Image.new("RGB", picture.size, PAPER), 0.5), 0, 0)
     boxes = graphs.boxes * (picture.width / VIEW_PX) + [1, 1, -1, -1]
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
-    words = words_in_words(graphs.words)
+    words = unpack_words(graphs.words)
     colours = [colour_of(label) for label, _, _ in words]
     names = [f"{CLASSES[c]}, {SIZES[s]}, {LOCATIONS[l]}" if full else CLASSES[c] for c, s, l in words]
     taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name shall cover them, nor another name

@@ -10,7 +10,7 @@ from PIL import Image
 
 from . import draw
 from .classes import CLASSES, N_CLASSES, PALETTE, from_ade20k
-from .scene_graph import VIEW_PX, scene_graph, words_in_words
+from .scene_graph import VIEW_PX, scene_graph, unpack_words
 from .terminal import count
 
 
@@ -30,15 +30,15 @@ def run(args):
     if out.suffix.lower() != ".png":
         raise ValueError(f"--out: expected a name that ends in .png, found {out}")
     if out.exists() and out.samefile(args.labels):
-        raise ValueError(f"--out: expected another file than the labels, found {out}")
+        raise ValueError(f"--out: expected a file other than the labels, found {out}")
     graph = scene_graph(labels)
     print(f"{args.labels}: {labels.shape[1]} x {labels.shape[0]} pixels{' read by their colours' if coloured else ''}, "
           f"{count(len(graph.words), 'node')}, {count(len(graph.edges), 'edge')}")
-    classes = {CLASSES[label] for label, _, _ in words_in_words(graph.words)}
+    classes = {CLASSES[label] for label, _, _ in unpack_words(graph.words)}
     if len(classes) == 1:
         print(f"every node is '{classes.pop()}': if that is not so, the indices are those of another list "
               + ("(gnl's own: without --ade20k; ADE20K's count from 1)" if args.ade20k else "(ADE20K's: --ade20k)"))
-    for i, ((label, size, location), box) in enumerate(zip(words_in_words(graph.words), graph.boxes, strict=True)):
+    for i, ((label, size, location), box) in enumerate(zip(unpack_words(graph.words), graph.boxes, strict=True)):
         neighbours = sorted({*graph.edges[graph.edges[:, 0] == i, 1], *graph.edges[graph.edges[:, 1] == i, 0]})
         print(f"{i:3}  {CLASSES[label]}, {draw.SIZES[size]}, {draw.LOCATIONS[location]}  word {graph.words[i]}  "
               f"box {' '.join(f'{v:.0f}' for v in box)}  next to {' '.join(map(str, neighbours)) or 'none'}")

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import nnql, planners
-from .kdtree import check_count
+from .checks import check_count
 from .nn import softmax
 from .particles import FLOOR, ParticleFilter
 from .places import check_poses
@@ -75,14 +75,16 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
 
     The streams of appearance, motion, filter and exploration are independent children of `seed`. They are drawn
     alike in every step, so two planners see the same start, noise and particles until their actions differ.
-    watch(step, poses, scores, filter, pooled, seen, actions, states, places, right, belief) is called by these names
-    after every look: that is where a learner learns. `seen` are the states before the actions, `states` those after
+    watch(step, poses, scores, filter, pooled, before, actions, states, places, right, belief) is called by these names
+    after every look: that is where a learner learns. `before` are the states in which `actions` were chosen, `states`
+    those to which they led; at the first look `before` and `actions` are None.
     """
     rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
     poses = check_poses(starts).reshape(-1, 3)
     B = len(poses)
-    kept, states, actions, particles = {name: [] for name in Record.__dataclass_fields__}, None, None, None
+    looks, done = [], []
+    states = actions = particles = None
     for step in range(rules.length + 1):
         if step:
             actions = senses.timed("plan", plan, step - 1, states, exploring)
@@ -90,7 +92,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
                 break
             actions = np.array(actions)  # a planner may use its own again
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
-            kept["actions"].append(actions)
+            done.append(actions)
         scores = senses.scores(poses, appearance)
         if np.shape(scores) != (B, grid.n_places):
             raise ValueError(f"scores: expected shape ({B}, {grid.n_places}), found {np.shape(scores)}")
@@ -100,15 +102,15 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
         else:
             particles = senses.timed("filter", rules.filter, grid, likelihood, filtering)
         pooled = senses.timed("filter", particles.belief, rules.pooling)
-        seen, states = states, senses.timed("ranks", rules.state, scores, particles, step, actions)
+        before, states = states, senses.timed("ranks", rules.state, scores, particles, step, actions)
         places, answers = grid.place_of(poses), pooled.argmax(1)
         belief = pooled[np.arange(B), places]
-        for name, value in (("poses", poses), ("answers", answers), ("places", places), ("belief", belief)):
-            kept[name].append(value)
+        looks.append((poses, answers, places, belief))
         if watch:
-            watch(step, poses=poses, scores=scores, filter=particles, pooled=pooled, seen=seen, actions=actions,
-                  states=states, places=places, right=answers == places, belief=belief)
-    return Record(**{name: np.stack(values, 1) if values else np.empty((B, 0), int) for name, values in kept.items()})
+            watch(step, poses=poses, scores=scores, filter=particles, pooled=pooled, before=before,
+                  actions=actions, states=states, places=places, right=answers == places, belief=belief)
+    poses, answers, places, belief = (np.stack(of_looks, 1) for of_looks in zip(*looks, strict=True))
+    return Record(poses, np.stack(done, 1) if done else np.empty((B, 0), int), answers, places, belief)
 
 
 def run_all(senses, robot, grid, plan, starts, seed, progress=None, **options):
@@ -122,8 +124,9 @@ def run_all(senses, robot, grid, plan, starts, seed, progress=None, **options):
         if progress:
             progress(len(records) / len(groups), np.concatenate([record.correct[:, -1] for record in records]).mean())
     if len(n_looks := {record.places.shape[1] for record in records}) > 1:
-        raise ValueError(f"plan: expected to end all groups of robots after as many looks, found {sorted(n_looks)}")
-    return Record(*(np.concatenate([getattr(r, name) for r in records]) for name in Record.__dataclass_fields__))
+        raise ValueError("plan: expected to end all groups of robots after equally many looks, "
+                         f"found {sorted(n_looks)}")
+    return Record(*map(np.concatenate, zip(*(vars(record).values() for record in records), strict=True)))
 
 
 def side_by_side(starts):
@@ -137,12 +140,12 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
                progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    checkpoint_every : take one after so many episodes, and so again. Robots that learn side by side end there: with
-    another number, or none, the same seed learns otherwise
+    checkpoint_every : episodes from one checkpoint to the next. No group of robots side by side goes on beyond one, so
+    that the same seed learns otherwise with another number, or with none
     store : an NNQL of other settings, or one that goes on learning (its exploration begins anew)
     watch(step, **what happened) is called after every look, as in `run`; the rules' reward gets what happened, too, and
     `done`, whether nothing comes after
-    progress(share done, recent share of right answers)
+    progress(share done, recent share of right answers) is called after each group
     """
     if checkpoint_every is not None:
         checkpoint_every = check_count("checkpoint_every", checkpoint_every, 1)
@@ -153,7 +156,7 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
         if step:
             done = np.full(len(look["actions"]), step == rules.length)
             reward = rules.reward(done=done, **look)
-            senses.timed("learn", store.learn, look["seen"], look["actions"], reward, look["states"], done)
+            senses.timed("learn", store.learn, look["before"], look["actions"], reward, look["states"], done)
         if watch:
             watch(step, **look)
 
@@ -183,18 +186,18 @@ def race(senses, robot, grid, starts, seed, rules=None):
     length, starts = (rules or Rules()).length, np.asarray(starts)
     if length < 1 or not len(starts):
         raise ValueError(f"race: expected at least one action and one start, found {length} and {len(starts)}")
-    sequences, first = planners.sequences(length), 0
+    sequences, used = planners.sequences(length), 0
     total, count, running = np.zeros(len(sequences)), np.zeros(len(sequences)), np.arange(len(sequences))
     repeats = np.flatnonzero((sequences == sequences[:, :1]).all(1))
     for n, child in enumerate(_seed(seed).spawn(length)):
-        size = max(1, len(starts) * 2 * 3 ** n // (3 ** length - 1))
-        groups = side_by_side(np.arange(size * len(running)))
+        n_new = max(1, len(starts) * 2 * 3 ** n // (3 ** length - 1))  # 1, 3, 9, ... shares, together all starts
+        groups = side_by_side(np.arange(n_new * len(running)))
         for group, grandchild in zip(groups, child.spawn(len(groups)), strict=True):
             start, which = np.divmod(group, len(running))
             plan = planners.scan(sequences[running[which]])
-            record = run(senses, robot, grid, plan, starts[(first + start) % len(starts)], grandchild, rules)
+            record = run(senses, robot, grid, plan, starts[(used + start) % len(starts)], grandchild, rules)
             np.add.at(total, running[which], record.belief[:, -1])
-        first, count[running] = first + size, count[running] + size
+        used, count[running] = used + n_new, count[running] + n_new
         finalists, best = running, running[np.argsort(-total[running], kind="stable")]
         running = np.union1d(best[:-(-len(best) // 3)], repeats)
     worth = total / count

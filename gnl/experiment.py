@@ -12,7 +12,6 @@ SV is the first look of MV; Ours, DA and Oracle are chosen among the checkpoints
 MV, Scan and Ours are tested once more, from some of the starts of training: what has Ours learned by heart?
 """
 
-import json
 import platform
 import resource
 import sys
@@ -25,7 +24,7 @@ import numpy as np
 from . import episode, learned, planners
 from .files import load_json
 from .options import Experience, Options
-from .outcomes import arrays, curve, from_training, outcomes, right
+from .outcomes import curve, from_strings, from_training, outcome_of, right
 from .places import PlaceGrid
 from .robot import Robot
 from .senses import SharedSenses
@@ -75,7 +74,7 @@ def run_cell(cell, senses, starts, settings=None):
 
     def test(plans, poses, seed):  # all from the same starts with the same luck
         shared = SharedSenses(senses)
-        return {name: outcomes(grid, episode.run_all(shared, robot, grid, plan, poses, seed), 1 + episode.LENGTH)
+        return {name: outcome_of(grid, episode.run_all(shared, robot, grid, plan, poses, seed), 1 + episode.LENGTH)
                 for name, plan in plans.items()}
 
     plans = {"MV": planners.chance, "Scan": planners.scan(sequences[0]),
@@ -114,19 +113,19 @@ def costs(senses, began, n_pairs):
                                                                  ("numpy", "scipy", "pillow", "pymunk")}}}
 
 
-def costs_of(path):
+def costs_path(path):
     """The file of the costs of a cell, from that of its outcomes."""
     return path.parents[1] / "costs" / path.name
 
 
 def load_cell(path):
     """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
-    def look(result):
-        curve([result]), right(result)
+    def check(result):
+        curve([result]), right(result)  # each fails where something is missing
         if lacking := {"MV", "Scan", "Ours"} - from_training(result).keys():
             raise ValueError(f"no {', '.join(sorted(lacking))} from training starts")
         for tests in [*result["tests"].values(), *result["checkpoints"]], result["from training starts"].values():
-            sizes = {np.shape(arrays(outcome[name])) for outcome in tests for name in ("place", "location")}
+            sizes = {np.shape(from_strings(outcome[name])) for outcome in tests for name in ("place", "location")}
             if len(sizes) > 1:
                 raise ValueError(f"tests of {sizes} episodes and looks")
             n_tests, _ = sizes.pop()
@@ -138,17 +137,12 @@ def load_cell(path):
         if not len(result["checkpoints"]) == len(result["validation"]) == N_CHECKPOINTS:
             raise ValueError(f"{len(result['checkpoints'])} checkpoints, {len(result['validation'])} validated")
 
-    def look_at_costs(costs):
+    def check_costs(costs):
         numbers = [costs["seconds"], costs["views"], costs["peak MB"], costs["of training"]["seconds"],
                    *costs["of stages"].values()]
         if not all(0 <= number < float("inf") for number in numbers) or not costs["views"]:  # NaN compares as false
             raise ValueError("no views, less than nothing, or no number")
         costs["of stages"]["graph"], costs["machine"].split(), costs["versions"].items()
 
-    return (load_json(path, "the outcomes of a cell", look),
-            load_json(costs_of(path), "the costs of a cell", look_at_costs))
-
-
-def to_bytes(value):
-    """JSON in one form only, so that equal outcomes are equal files."""
-    return (json.dumps(value, sort_keys=True, separators=(",", ":")) + "\n").encode()
+    return (load_json(path, "the outcomes of a cell", check),
+            load_json(costs_path(path), "the costs of a cell", check_costs))

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .checks import check_finite
+
 FORMAT = 1
 
 
@@ -25,7 +27,7 @@ def write_whole(path, data):
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:  # it names the temporary file
+    except OSError as error:  # it would name the temporary file
         raise OSError(error.errno, error.strerror, str(path)) from None
     try:
         with os.fdopen(handle, "wb") as file:
@@ -35,7 +37,7 @@ def write_whole(path, data):
         os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; give back the usual rights
         os.replace(temporary, path)
     except BaseException as error:
-        Path(temporary).unlink(missing_ok=True)  # interrupted after all was done, it has its name already
+        Path(temporary).unlink(missing_ok=True)  # it is gone if the interruption came after the renaming
         if isinstance(error, OSError) and error.errno:  # it names no file, or the temporary one
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
@@ -68,7 +70,7 @@ def save_arrays(path, made_by, **arrays):
 
 
 def load_arrays(path):
-    """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError if it is none."""
+    """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError for any other file."""
     if not Path(path).exists():
         raise ValueError(f"{path}: expected a file of arrays, found nothing")
     try:
@@ -86,10 +88,15 @@ def load_arrays(path):
     return arrays, made_by
 
 
-def load_json(path, what, look=None):
+def save_json(path, value):
+    """Save what JSON can hold in one form only, so that equal values are equal files."""
+    write_whole(path, (json.dumps(value, sort_keys=True, separators=(",", ":")) + "\n").encode())
+
+
+def load_json(path, what, check=None):
     """The dict in a JSON file; ValueError that names the file, and `what` it should hold.
 
-    look(dict) may use what should be there: whatever goes wrong there is wrong with the file.
+    check(dict) may simply use what should be there: whatever it raises is a fault of the file.
     """
     try:
         found = json.loads(Path(path).read_bytes())
@@ -98,8 +105,8 @@ def load_json(path, what, look=None):
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected {what}, found a {type(found).__name__}")
     try:
-        if look:
-            look(found)
+        if check:
+            check(found)
     except (ValueError, KeyError, TypeError, IndexError, AttributeError, ZeroDivisionError) as error:
         raise ValueError(f"{path}: expected {what}, found {error!r}") from None
     return found
@@ -115,5 +122,4 @@ def check_params(path, params, wanted):
         values = params[name]
         if not np.issubdtype(values.dtype, np.floating):
             raise ValueError(f"{path}: {name}: expected floating-point numbers, found {values.dtype}")
-        if not np.isfinite(values).all():
-            raise ValueError(f"{path}: {name}: expected finite numbers, found {values[~np.isfinite(values)][0]}")
+        check_finite(f"{path}: {name}", values)

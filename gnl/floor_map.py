@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from .canvas import BELIEF, INK, PAPER, QUIET, ROBOT, TINTS, Canvas, colour_of, text_width
 from .classes import WALL
 from .free_space import box_distance
-from .polygons import columns, cover_polygon
+from .polygons import cover_polygon, footprints
 from .strip import cast, slopes
 from .world import ROBOT_HEIGHT_M, ROBOT_RADIUS_M, STEP_M
 
@@ -102,7 +102,8 @@ class Map(Canvas):
 
     def petal(self, place):
         """Outline [px] of the bearings that belong to a place, around the middle of its cell."""
-        middle, g = self.grid.corner_of(place) + np.array([0.5, 0.5, 0]) * self.grid.cell_m, self.grid
+        g = self.grid
+        middle = g.corner_of(place) + np.array([0.5, 0.5, 0]) * g.cell_m
         rim = middle[:2] + 0.46 * g.cell_m * _ahead(middle[2] + np.linspace(0, 2 * np.pi / g.n_bearings, 8))
         return self.at([middle[:2], *rim])
 
@@ -171,7 +172,7 @@ class Map(Canvas):
                 along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
                 free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
                 free = free.reshape(-1, 7).min(1)
-                beyond = box_distance(along, *columns(parts)).min(1).reshape(-1, 7).max(1)
+                beyond = box_distance(along, *footprints(parts)).min(1).reshape(-1, 7).max(1)
                 best = (free - 2 * beyond - 0.05 * np.hypot(*(spots - middle).T)).argmax()
                 if not beyond[best]:
                     break  # it does not reach over a wall

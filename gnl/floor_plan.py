@@ -7,10 +7,10 @@
      "objects": [{"class": "bed", "polygon": [[x, y], ...], "z0": 0.0, "height": 0.5, "color": [r, g, b]}],
      "colors":  {"wall": [r, g, b], "floor": [r, g, b], "ceiling": [r, g, b]}}
 
-Metres; `height` is an object's own extent above `z0`; walls end where a door begins. There must be `walls`; of a door
-its segment, of a room its polygon (3 to 400 corners), of an object class, polygon and height. Keys that are not listed
-are left as they are (but all `colors` are colours). Each fault is one ValueError: file, place in the file, what was
-expected, what was found.
+Metres; `height` is an object's own extent above `z0`; walls end where a door begins. Required are `walls`, a door's
+segment, a room's polygon (3 to 400 corners), an object's class, polygon and height. Other keys are left as they are,
+but whatever `colors` holds must be a colour. Each fault is one ValueError: file, place in the file, what was expected,
+what was found.
 """
 
 import json
@@ -25,7 +25,7 @@ WALL_HEIGHT_M, LOWEST_WALL_M = 2.5, 1.35  # no lower than the robot
 DOOR_HEIGHT_M = 2.0
 LARGEST_HOME_M = 200.0
 FARTHEST_M = 10_000.0  # from the origin: farther off, 32 bits hold a particle's place to no better than a millimetre
-MOST_CORNERS, MOST_INNER = 400, 50  # of a polygon; to cover a jagged one takes time as their number to the third
+MOST_CORNERS, MOST_INNER = 400, 50  # of a polygon; the time to cover a jagged one grows with the cube of their number
 HUGE = 1e9  # no number of a plan is greater
 DEEPEST = 100  # lists and objects inside one another; the format needs five
 

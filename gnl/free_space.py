@@ -37,14 +37,14 @@ class FreeSpace:
         """Whether each point is within the home: (n, 2) -> (n,) bool."""
         return self.look_up(self._inside, xy)
 
-    def largest_room(self, radius_m):
+    def largest_region(self, radius_m):
         """The largest connected region in which a disc may stand, as a raster of bool."""
         regions, _ = ndimage.label(self._inside & (self.clearance > radius_m))
         sizes = np.bincount(regions.ravel(), minlength=2)
         return regions == 1 + sizes[1:].argmax()
 
     def look_up(self, raster, xy):
-        """Values of `raster` at points (n, 2); False beyond its rim."""
+        """Whether a raster of bool holds at each point: (n, 2) -> (n,) bool; beyond its rim it does not."""
         cell = np.floor((np.asarray(xy, float) - self.origin) / RASTER_M).astype(int)
         known = ((cell >= 0) & (cell < self.shape)).all(-1)
         ix, iy = np.where(known[..., None], cell, 0).T
@@ -58,20 +58,20 @@ class FreeSpace:
             low = np.floor((c - reach - self.origin) / RASTER_M).astype(int).clip(0)
             high = np.ceil((c + reach - self.origin) / RASTER_M).astype(int).clip(0)
             window = raster[low[0]:high[0], low[1]:high[1]]
-            if window.size:
-                x, y = (np.arange(n) * RASTER_M for n in window.shape)
-                x, y = x[:, None] + self._middle(low, 0) - c[0], y + self._middle(low, 1) - c[1]
-                u, v = x * np.cos(a) + y * np.sin(a), y * np.cos(a) - x * np.sin(a)
-                fat = np.maximum(h, RASTER_M / 1.4)  # so that a thin wall between two cell centres still fills one
-                window |= (abs(u) <= fat[0]) & (abs(v) <= fat[1])
+            first = self.origin + (low + 0.5) * RASTER_M  # middle of the window's first cell
+            x, y = (np.arange(n) * RASTER_M + f - m for n, f, m in zip(window.shape, first, c, strict=True))
+            u, v = _along_sides(x[:, None], y, a)
+            fat = np.maximum(h, RASTER_M / 1.4)  # so that a thin wall between two cell centres still fills one
+            window |= (abs(u) <= fat[0]) & (abs(v) <= fat[1])
         return raster
-
-    def _middle(self, cell, axis):
-        return self.origin[axis] + (cell[axis] + 0.5) * RASTER_M
 
 
 def box_distance(xy, centre, half, angle):
     """Distance from points to boxes, 0 within: (n, 2) and N boxes -> (n, N) [m]."""
-    d = xy[:, None] - centre
-    u, v = d[..., 0] * np.cos(angle) + d[..., 1] * np.sin(angle), d[..., 1] * np.cos(angle) - d[..., 0] * np.sin(angle)
+    u, v = _along_sides(*np.moveaxis(xy[:, None] - centre, -1, 0), angle)
     return np.hypot((abs(u) - half[:, 0]).clip(0), (abs(v) - half[:, 1]).clip(0))
+
+
+def _along_sides(x, y, angle):
+    """How far points (x, y) lie along the sides of boxes that are turned by `angle`."""
+    return x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)

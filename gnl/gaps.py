@@ -22,9 +22,9 @@ def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
 def poses_beyond(world, tests, t_xy_m, t_theta_rad, n, rng, gap=beyond_gap):
     """n poses uniform over the free space beyond the gap from the tests: (n, 3).
 
-    gap : which poses are, a function like `beyond_gap`
+    gap : a function like `beyond_gap`, which says which poses are beyond it
 
-    ValueError with the share of poses that would do, if a home has too little of it
+    ValueError if too few of the poses drawn are, with their share
     """
     poses, drawn = np.empty((0, 3)), 0
     while len(poses) < n:

@@ -193,7 +193,7 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
         order, losses = rng.permutation(len(places)), []
         for i in range(0, len(order), batch):
             picked = order[i:i + batch]
-            scores, cache = gcn.forward(graphs.pick(picked))
+            scores, cache = gcn.forward(graphs[picked])
             loss, dscores = softmax_cross_entropy(scores, places[picked])
             adam.step(gcn.backward(dscores, cache))
             losses.append(loss)

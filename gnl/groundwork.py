@@ -18,7 +18,7 @@ from .terminal import Stage, count
 from .world import World
 
 
-def prepare(out, settings, cells, jobs, pool):
+def prepare(out, settings, cells, n_processes, pool):
     """What the cells share: homes and starts, drawn by a program of their own, the net, a GCN for each world.
 
     Yields (world, Senses) as soon as the world's GCN is learned.
@@ -28,7 +28,7 @@ def prepare(out, settings, cells, jobs, pool):
     # If just these are there, made by this very code, data_gen leaves them; so with the views.
     names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
     _draw("starts", out / "data", *names, "--training", settings.episodes, "--tests", settings.tests,
-          "--validation", settings.validation, "--jobs", jobs)
+          "--validation", settings.validation, "--jobs", n_processes)
     net, stage = taught_net(out, settings), Stage("gcn")
     senses = {world: Senses(_load_home(homes[world], world), net, None, settings.noise) for world in worlds}
     how = {"epochs": settings.gcn_epochs, "batch": settings.gcn_batch, "rate": settings.gcn_rate}

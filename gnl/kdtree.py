@@ -19,6 +19,8 @@ from itertools import count
 
 import numpy as np
 
+from .checks import check_count
+
 LEAF_SIZE = 32  # points; to look at so few at once costs hardly more than to choose between two boxes
 
 
@@ -171,10 +173,3 @@ def as_points(points, dim):
     if points.ndim != 2 or points.shape[1] != dim:
         raise ValueError(f"points: expected shape (n, {dim}), found {points.shape}")
     return points
-
-
-def check_count(name, value, least, most=np.inf):
-    """A whole number from least to most, or a ValueError."""
-    if not isinstance(value, int | np.integer) or not least <= value <= most:
-        raise ValueError(f"{name}: expected a whole number from {least} to {most}, found {value!r}")
-    return int(value)

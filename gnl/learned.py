@@ -1,4 +1,4 @@
-"""Learned parts, each kept in a file: learnt when it is not there yet, loaded when it is.
+"""Learned parts, each kept in a file: learned when it is not there yet, loaded when it is.
 
 A file's name carries a digest of the settings that went into it (seed, floor plan, training views) and of the code of
 the stages, so others make another file and never a wrong answer.
@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from . import episode, gcn, nnql, segnet
+from .checks import check_count
 from .classes import N_CLASSES
 from .files import load_arrays, save_arrays
-from .kdtree import check_count
 from .places import PlaceGrid
 from .ranks import ranks
 from .robot import Robot, check_actions
@@ -22,12 +22,12 @@ from .scene_graph import join
 from .senses import Senses
 
 # Whoever changes one of these modules learns anew.
-STAGES = ("camera", "checkpoints", "classes", "episode", "floor_plan", "free_space", "gcn", "kdtree", "learned", "nn",
-          "nnql", "particles", "photo", "places", "planners", "polygons", "rank_index", "ranks", "robot", "scene_graph",
-          "segnet", "senses", "strip", "world")
+STAGES = ("camera", "checkpoints", "checks", "classes", "episode", "floor_plan", "free_space", "gcn", "kdtree",
+          "learned", "nn", "nnql", "particles", "photo", "places", "planners", "polygons", "rank_index", "ranks",
+          "robot", "scene_graph", "segnet", "senses", "strip", "world")
 
 
-def code(folder=Path(__file__).parent, modules=STAGES):
+def digest_of_code(folder=Path(__file__).parent, modules=STAGES):
     """Eight hex digits of the text of some modules."""
     return digest([(folder / f"{name}.py").read_text(encoding="utf-8") for name in modules])
 
@@ -47,7 +47,7 @@ def fingerprint(params):
 
 def path_of(folder, name, settings):
     """The file of the part `name` made with `settings`."""
-    return Path(folder) / f"{name}-{digest([settings, code()])}.npz"
+    return Path(folder) / f"{name}-{digest([settings, digest_of_code()])}.npz"
 
 
 def kept(folder, name, settings, load, learn):
@@ -115,18 +115,18 @@ def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
 
     Whoever asks for the next one waits until it is learned; the pool can have other work by then.
     """
-    settings = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
-                for world, of_world in senses.items()}
+    settings_of = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
+                   for world, of_world in senses.items()}
     learning = {world: pool.submit(learn_places, of_world, PlaceGrid(of_world.world), n_views, seed, **how)
-                for world, of_world in senses.items() if not path_of(folder, "gcn", settings[world]).exists()}
+                for world, of_world in senses.items() if not path_of(folder, "gcn", settings_of[world]).exists()}
 
     def learn(world, path):
         network = learning[world].result()
-        network.save(path, settings[world])
+        network.save(path, settings_of[world])
         return network
 
     for world in senses:
-        yield world, kept(folder, "gcn", settings[world], gcn.GCN.load, partial(learn, world))
+        yield world, kept(folder, "gcn", settings_of[world], gcn.GCN.load, partial(learn, world))
 
 
 def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.float32, draw=None, **how):
@@ -137,10 +137,13 @@ def learn_places(senses, grid, n_views, seed, helper=None, stage=None, dtype=np.
     n_views, rng = check_count("n_views", n_views, 1), np.random.default_rng(seed)
     # CHOICE: from the whole home, places near the tests too; the paper trains one classifier "for each dataset".
     poses = (draw or senses.world.free_poses)(n_views, rng)
-    half = n_views // 2 if helper and n_views > 1 else n_views
-    theirs = half < n_views and helper.submit(senses.look_around, poses[half:], np.random.default_rng([seed, 1]))
-    graphs = senses.look_around(poses[:half], rng, stage and (lambda share: stage(0.5 * share, "looking around")))
-    graphs = join([graphs, theirs.result()]) if theirs else graphs
+    theirs, ours = None, poses
+    if helper and n_views > 1:
+        ours, others = poses[:n_views // 2], poses[n_views // 2:]
+        theirs = helper.submit(senses.look_around, others, np.random.default_rng([seed, 1]))
+    graphs = senses.look_around(ours, rng, stage and (lambda share: stage(0.5 * share, "looking around")))
+    if theirs:
+        graphs = join([graphs, theirs.result()])
     network = gcn.GCN(grid.n_places, rng, dtype=dtype)
     gcn.train(network, graphs, grid.place_of(poses), rng, **how,
               progress=stage and (lambda share, loss: stage(0.5 + 0.5 * share, f"loss {loss:.2f}")))

@@ -39,7 +39,10 @@ def conv_backward(dout, cache):
 
 
 def linear_forward(x, w, b=None):
-    """The same linear map at every pixel (1 x 1 convolution): x (..., C), w (C, F), b (F,) -> (..., F); cache: x, w."""
+    """The same linear map at every pixel (1 x 1 convolution).
+
+    x (..., C), w (C, F), b (F,) or None -> (..., F); cache: x, w
+    """
     out = (x.reshape(len(x), -1, len(w)) if x.ndim > 2 else x) @ w  # a product for each image, not for each of its rows
     if b is not None:
         out += b
@@ -135,7 +138,7 @@ class Adam:
         self.v = {name: np.zeros_like(p) for name, p in params.items()}
 
     def step(self, grads, rate=None):
-        """Move `params` in place against `grads`, a dict of the same names."""
+        """Move `params` in place against `grads`, a dict of the same names, at `rate` if given."""
         self.t += 1
         rate = (self.rate if rate is None else rate) * math.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
         rate = float(rate)  # a float of NumPy would have the product below computed in 64 bits
@@ -153,11 +156,9 @@ class Adam:
 
 
 def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):
-    """Largest relative difference between dx and central differences of the scalar f, at random entries of x.
+    """Largest relative difference between dx and central differences of the scalar f at random entries of x, or NaN.
 
         df/dx_i = (f(x + eps e_i) - f(x - eps e_i)) / (2 eps),   a to b differs by |a - b| / max(1e-6, |a| + |b|)
-
-    NaN if one of them is.
 
     f : function of no argument that reads x, a float64 array which is nudged in place and restored
     """

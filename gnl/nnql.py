@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .checkpoints import Checkpoints
+from .checks import check_count, check_finite
 from .files import load_arrays, save_arrays
-from .kdtree import check_count, lengths
+from .kdtree import lengths
 from .rank_index import RankIndex
 from .robot import check_actions
 
@@ -60,7 +61,7 @@ class Neighbours:
     def joined_by(self, states, newborn, ids):
         """The same after pairs of the states `newborn` (m, K) were stored with the numbers ids (m,)."""
         k, S, born = self.pair.shape[1], states.astype(float), newborn.astype(float)
-        # Few of the newborn are near. Which ones, |s|^2 + |b|^2 - 2 s.b tells nearly; the rest can stay inf.
+        # Few of the newborn are near. Which ones, |s|^2 + |b|^2 - 2 s.b tells but for rounding; the rest can stay inf.
         size = (S ** 2).sum(1)[:, None]
         roughly = size + (born ** 2).sum(1) - 2 * S @ born.T
         near = (roughly <= self.distance[:, -1:] ** 2 + 1e-6 * size) & (self.itself < 0)[:, None]
@@ -104,12 +105,12 @@ class NNQL:
         # CHOICE: neighbours of a pair are pairs of the same action; the paper's N(s, a) could hold others, too.
         self.index = [index(state_size) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
-        self.log = Checkpoints(n_actions)
+        self.checkpoints = Checkpoints(n_actions)
         self._states, self._found = None, []  # what was looked up last, and of each action its Neighbours
 
     def q_values(self, states):
         """Equation 1: states (B, K) -> (B, A). An action that was never tried has value 0."""
-        return _q_values(self._neighbours(states), self.values)
+        return _means(self._neighbours(states), self.values)
 
     def learn(self, states, actions, rewards, next_states, done):
         """Equation 2 for B transitions; states, next_states (B, K), actions (B,), rewards (B,).
@@ -124,8 +125,7 @@ class NNQL:
         if states.shape != next_states.shape or not rewards.shape == done.shape == (B,):
             raise ValueError(f"step: expected one of each for {B} states, found next states {next_states.shape}, "
                              f"rewards {rewards.shape} and done {done.shape}")
-        if not np.isfinite(rewards).all():
-            raise ValueError(f"rewards: expected finite numbers, found {rewards[~np.isfinite(rewards)][0]}")
+        check_finite("rewards", rewards)
         found = self._neighbours(states)
         if done.all():
             ahead, self._states = 0.0, None  # nobody will ask for what comes after
@@ -140,6 +140,7 @@ class NNQL:
                 self._learn(states[rows], a, q, pair, target[rows])
 
     def _learn(self, states, a, q, pair, target):
+        """Equation 2 for the robots that did action a: states (m, K), q, target (m,), pair (m,) -1 where it is new."""
         values, born = self.values[a], {}  # born: values of the pairs that this step adds, by state
         for i, state in enumerate(states):
             if pair[i] >= 0:
@@ -162,23 +163,23 @@ class NNQL:
         """
         states = np.asarray(states, np.float32)
         if not np.array_equal(states, self._states):
-            self._found = _neighbours(self.index, self.values, states, self.k)
+            self._found = _find(self, states)
             self._states = states.copy()
         return self._found
 
     def checkpoint(self):
         """Remember today's Q."""
-        self.log.take(self.values)
+        self.checkpoints.add(self.values)
 
     def at(self, checkpoint):
         """Q as it was at a checkpoint (0, 1, ...), to ask and not to teach; shares the states with this store."""
-        return PastQ(self.index, self.log.values_at(checkpoint), self.k)
+        return PastQ(self.index, self.checkpoints.values_at(checkpoint), self.k)
 
     def save(self, path, made_by):
         """Write states, values and checkpoints, and what made them."""
         states = {f"states{a}": index.points for a, index in enumerate(self.index)}
         values = {f"values{a}": values for a, values in enumerate(self.values)}
-        save_arrays(path, made_by, **states, **values, **self.log.to_arrays())
+        save_arrays(path, made_by, **states, **values, **self.checkpoints.to_arrays())
 
     @classmethod
     def load(cls, path, **settings):
@@ -199,7 +200,7 @@ class NNQL:
             for a, index in enumerate(store.index):
                 index.add(arrays[f"states{a}"])
             store.values = [arrays[f"values{a}"] for a in range(n_actions)]
-            store.log = Checkpoints.from_arrays(arrays, n_actions)
+            store.checkpoints = Checkpoints.from_arrays(arrays, n_actions)
         except (ValueError, IndexError, TypeError) as error:
             raise ValueError(f"{path}: expected a store of state-action pairs, found another one ({error})") from None
         return store, made_by
@@ -216,13 +217,14 @@ class PastQ:
     def q_values(self, states):
         """Equation 1: states (B, K) -> (B, A)."""
         states = np.asarray(states, np.float32)
-        return _q_values(_neighbours(self.index, self.values, states, self.k), self.values)
+        return _means(_find(self, states), self.values)
 
 
-def _neighbours(index, values, states, k):
-    """Of each action the Neighbours of the states among as many pairs as there are values."""
-    return [Neighbours.find(of_action, states, k, len(v)) for of_action, v in zip(index, values, strict=True)]
+def _find(store, states):
+    """Of each action the Neighbours of the states, among as many pairs as the store has values."""
+    return [Neighbours.find(index, states, store.k, len(v)) for index, v in zip(store.index, store.values, strict=True)]
 
 
-def _q_values(found, values):
+def _means(found, values):
+    """Equation 1 for each action: (B, A)."""
     return np.stack([near.mean(v) for near, v in zip(found, values, strict=True)], 1)

@@ -30,22 +30,22 @@ class Experience:
     """All steps lived through until there are MOST_STEPS: states, actions and rewards, one after the other."""
 
     def __init__(self):
-        self.steps, self.seen, self.actions, self.states, self.rewards = [], [], [], [], []
+        self.steps, self.before, self.actions, self.after, self.rewards = [], [], [], [], []
 
-    def watch(self, step, seen, actions, states, places, **_):
+    def watch(self, step, before, actions, states, places, **_):
         """Remember a look of robots side by side; for `episode.run`."""
         if step and sum(map(len, self.actions)) < MOST_STEPS:
             self.steps.append(np.full(len(actions), step))
-            self.seen.append(seen)
+            self.before.append(before)
             self.actions.append(actions)
-            self.states.append(states)
+            self.after.append(states)
             self.rewards.append(states[np.arange(len(states)), places])  # a state holds 1 / rank of every place
 
     def arrays(self):
         """Steps (1 after the first view), states before, actions, states after, rewards; of one look or more."""
         if not self.steps:
             raise ValueError("experience: expected at least one step, found none")
-        return (np.concatenate(part) for part in (self.steps, self.seen, self.actions, self.states, self.rewards))
+        return (np.concatenate(part) for part in (self.steps, self.before, self.actions, self.after, self.rewards))
 
 
 class Options:
@@ -55,38 +55,38 @@ class Options:
     """
 
     def __init__(self, experience, sequences, worth, k=K_NEIGHBOURS):
-        steps, seen, actions, states, rewards = experience.arrays()
-        first, length = seen[steps == 1][:FIRST_VIEWS], sequences.shape[1]
-        self.k, self.seen, self.ahead = k, [], []
+        steps, before, actions, after, rewards = experience.arrays()
+        first, length = before[steps == 1][:FIRST_VIEWS], sequences.shape[1]
+        self.k, self.before, self.ahead = k, [], []
         for a in range(N_ACTIONS):
             rows = np.flatnonzero(actions == a)
-            near, reward = nearest(states[rows], seen[rows], k), rewards[rows] / length
+            near, reward = nearest(after[rows], before[rows], k), rewards[rows] / length
             ahead = reward  # of each remembered step: its reward and V of the state after it, with more and more to go
             for _ in range(length - 1 if len(rows) else 0):
                 ahead = reward + ahead[near].mean(1)
-            self.seen.append(seen[rows])
+            self.before.append(before[rows])
             self.ahead.append(ahead)
         in_race = np.array([worth[(sequences == a).all(1)][0] for a in range(N_ACTIONS)])
         self.offset = in_race - self.values(first).mean(0)
 
     def values(self, states):
         """V_L of each action: (B, K) -> (B, A); 0 for one that was never tried."""
-        return np.stack([ahead[nearest(states, seen, self.k)].mean(1) if len(seen) else np.zeros(len(states))
-                         for seen, ahead in zip(self.seen, self.ahead, strict=True)], 1)
+        return np.stack([ahead[nearest(states, before, self.k)].mean(1) if len(before) else np.zeros(len(states))
+                         for before, ahead in zip(self.before, self.ahead, strict=True)], 1)
 
     def q_values(self, states):
         """Worth of each action in the race, and how much more than on average lies ahead here: (B, K) -> (B, A)."""
         return self.values(states) + self.offset
 
 
-def nearest(states, seen, k):
-    """The k nearest of `seen` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)), unordered.
+def nearest(states, remembered, k):
+    """The k nearest of `remembered` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)), unordered.
 
     All states have one length, so the nearest have the greatest dot product.
     """
-    n, k = len(seen), min(k, len(seen))
+    n, k = len(remembered), min(k, len(remembered))
     found = np.empty((len(states), k), np.int32)
     for i in range(0, len(states), AT_ONCE):
-        dots = states[i:i + AT_ONCE] @ seen.T
+        dots = states[i:i + AT_ONCE] @ remembered.T
         found[i:i + AT_ONCE] = np.argpartition(dots, n - k, axis=1)[:, n - k:]
     return found

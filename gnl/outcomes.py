@@ -9,23 +9,24 @@ answer was right. The result of a cell holds an outcome of each method and of ea
 import numpy as np
 
 
-def outcomes(grid, record, n_looks=0):
-    """Right or wrong after each look, as strings of 1 and 0, a character an episode.
+def outcome_of(grid, record, n_looks=0):
+    """The outcome of a Record: right or wrong after each look, the place and the location alone.
 
     n_looks : robots that took fewer keep to their last answer, for so many looks
     """
     where = grid.location_of(record.answers) == grid.location_of(record.places)
     more = (0, 0), (0, max(0, n_looks - where.shape[1]))
-    return {"place": strings(np.pad(record.correct, more, "edge")), "location": strings(np.pad(where, more, "edge"))}
+    return {"place": to_strings(np.pad(record.correct, more, "edge")),
+            "location": to_strings(np.pad(where, more, "edge"))}
 
 
-def strings(right):
+def to_strings(right):
     """(n, T) bool -> T strings of n characters."""
     return ["".join("01"[int(one)] for one in look) for look in right.T]
 
 
-def arrays(looks):
-    """The other way round: T strings -> (n, T) bool."""
+def from_strings(looks):
+    """The way back: T strings -> (n, T) bool."""
     if set("".join(looks)) - {"0", "1"} or len(set(map(len, looks))) != 1:
         raise ValueError("looks that are no strings of 0 and 1, all equally long")
     characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in looks]).T
@@ -37,7 +38,7 @@ def answers(outcome, what="place", look=-1):
 
     what : "place", or "location" for the place without its bearing
     """
-    return arrays(outcome[what])[:, look]
+    return from_strings(outcome[what])[:, look]
 
 
 def right(result, what="place", checkpoint=-1):

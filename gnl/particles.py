@@ -27,8 +27,7 @@ class ParticleFilter:
     independent, and that is all it needs. They know no walls; one beyond the grid counts for the nearest cell.
     """
 
-    def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES,
-                 std=STD):
+    def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES, std=STD):
         """Guided start: particles uniform in the places that fit the first view best, weighed by how they fit.
 
         likelihood : (B, K), of each place given the first view
@@ -62,11 +61,11 @@ class ParticleFilter:
                              f"{np.isfinite(odometry).sum()} of them finite")
         noise = self.rng.standard_normal((3, self.x.shape[1]), np.float32)
         noise *= np.float32([[self.std[0]], [self.std[0]], [self.std[1]]])
-        for some in self._groups():
-            forward, turn = odometry[some].T[..., None]
-            self.x[some] += forward * np.cos(self.theta[some]) + noise[0]
-            self.y[some] += forward * np.sin(self.theta[some]) + noise[1]
-            self.theta[some] += turn + noise[2]
+        for group in self._groups():
+            forward, turn = odometry[group].T[..., None]
+            self.x[group] += forward * np.cos(self.theta[group]) + noise[0]
+            self.y[group] += forward * np.sin(self.theta[group]) + noise[1]
+            self.theta[group] += turn + noise[2]
 
     def weigh(self, likelihood):
         """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them.
@@ -79,8 +78,8 @@ class ParticleFilter:
             raise ValueError(f"likelihood: expected {B} x {K} finite numbers from 0 on, found {likelihood.shape} "
                              f"from {likelihood.min(initial=0)} to {likelihood.max(initial=0)}")
         self.place = np.empty(self.x.shape, int)
-        for some in self._groups():
-            self.place[some] = self.grid.place_of_xyt(self.x[some], self.y[some], self.theta[some])
+        for group in self._groups():
+            self.place[group] = self.grid.place_of_xyt(self.x[group], self.y[group], self.theta[group])
         for b, of_place in enumerate(likelihood):
             weight = self.weight[b] * of_place.take(self.place[b])
             total = weight.sum()
@@ -121,5 +120,5 @@ class ParticleFilter:
         self.weight = np.full((B, M), 1 / M, np.float32)
 
     def _groups(self):
-        """Slices of the filters."""
+        """Slices of the filters, AT_ONCE in each."""
         return [slice(b, b + AT_ONCE) for b in range(0, len(self.weight), AT_ONCE)]

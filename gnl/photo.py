@@ -86,6 +86,7 @@ def _luck(n_views, size, rng, noise):
     Light and exposure are drawn before the pixels: as many views of another size have the same.
     """
     n, pixels = n_views, n_views * size * size
+    # Albedo is in 0..1, a pixel in 0..255.
     exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((n, 1)))
     exposure = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((n, 3)))
     across, down = (noise * GRADIENT_STD * rng.standard_normal((2, n, 1, 1))).astype(np.float32)

@@ -8,9 +8,11 @@ A home is cut into cells of 2 m x 2 m x 30 degrees; each is one class that the c
 
 import numpy as np
 
+from .checks import check_finite
+
 CELL_M = 2.0
 N_BEARINGS = 12
-ROUNDING = 1e-10  # m, rad; what is so near to the next cell is in it: 30 degrees in radians are a little less
+ROUNDING = 1e-10  # m, rad; a pose so near to the next cell is in it: a multiple of 30 degrees may come out a bit less
 
 
 class PlaceGrid:
@@ -33,7 +35,7 @@ class PlaceGrid:
         return self.place_of_xyt(*np.moveaxis(check_poses(poses) + ROUNDING, -1, 0))
 
     def place_of_xyt(self, x, y, theta):
-        """The same from coordinates in arrays of their own."""
+        """The same from coordinates in arrays of their own, unchecked and without ROUNDING: for poses with noise."""
         ix = np.floor((x - self.origin[0]) * (1 / self.cell_m)).clip(0, self.nx - 1)
         iy = np.floor((y - self.origin[1]) * (1 / self.cell_m)).clip(0, self.ny - 1)
         ib = np.floor(theta * (self.n_bearings / (2 * np.pi)))
@@ -53,12 +55,11 @@ class PlaceGrid:
 
 
 def check_poses(poses):
-    """The poses as an array (..., 3) of floats; ValueError if they are none."""
+    """The poses as an array (..., 3) of floats; ValueError for another shape, NaN or infinity."""
     poses = np.asarray(poses, float)
     if poses.shape[-1:] != (3,):
         raise ValueError(f"poses: expected shape (..., 3), found {poses.shape}")
-    if not np.isfinite(poses).all():
-        raise ValueError(f"poses: expected finite numbers, found {poses[~np.isfinite(poses)][0]}")
+    check_finite("poses", poses)
     return poses
 
 

@@ -1,8 +1,8 @@
 """Planners: who chooses the next action.
 
 A planner is a function plan(step, states, rng) -> actions (B,): states (B, K) are the reciprocal ranks of the
-latest views, unless the episode's rules say otherwise, `rng` is the exploration stream. It answers None to end the
-episode of all robots. A planner that wants more, such as the particles, also hands a function to `episode.run` as
+latest views, unless the episode's rules say otherwise; `rng` is the exploration stream. A plan that returns None ends
+the episode of all robots. A planner that wants more, such as the particles, also hands a function to `episode.run` as
 `watch`, which is called before it.
 """
 
@@ -29,7 +29,7 @@ def scan(sequence):
 
     def plan(step, states, _rng):
         if step >= sequence.shape[-1]:
-            raise ValueError(f"scan: expected an action for every step, found {sequence.shape[-1]}")
+            raise ValueError(f"scan: expected an action for every step, found {sequence.shape[-1]} at step {step + 1}")
         return np.broadcast_to(sequence[..., step], len(states))
     return plan
 

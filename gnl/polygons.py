@@ -21,7 +21,7 @@ def cover_polygon(polygon):
     return boxes if sum(map(_area, boxes)) < WORTH_CUTTING * _area(whole) else [whole]
 
 
-def columns(rectangles):
+def footprints(rectangles):
     """Centre (N, 2), half the sides (N, 2) and angle (N,) of rows that begin as those of `cover_polygon`."""
     rows = np.asarray(rectangles)
     return rows[:, 0:2], rows[:, 2:4], rows[:, 4]

@@ -19,7 +19,8 @@ from bisect import bisect_left
 
 import numpy as np
 
-from .kdtree import as_points, check_count, check_points, lengths
+from .checks import check_count
+from .kdtree import as_points, check_points, lengths
 
 # Any choice gives the same answers.
 SMALL = 2000  # rows; up to so many stay on the pile, where it is fastest to look at every one

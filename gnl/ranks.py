@@ -13,7 +13,7 @@ def best_first(scores):
     """Places in the order of their scores, the greatest first, equal ones in the order of places: (B, K) -> (B, K)."""
     scores = np.asarray(scores)
     if not np.issubdtype(scores.dtype, np.floating):
-        scores = scores.astype(float)  # the negative of an unsigned number is none
+        scores = scores.astype(float)  # an unsigned number has no negative
     if np.isnan(scores).any():
         raise ValueError(f"scores: expected numbers, found {np.isnan(scores).sum()} NaN")
     return np.argsort(-scores, axis=-1, kind="stable")

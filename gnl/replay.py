@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from PIL import Image
 
-from . import canvas, draw
+from . import draw
 from .camera import render
+from .canvas import BAR, BELIEF, FAINT, INK, LINE_PX, PAPER, QUIET, RIGHT, ROBOT, TINTS, WRONG, Canvas
+from .classes import PALETTE
 from .episode import run
 from .files import write_whole
 from .floor_map import Map
@@ -40,9 +42,9 @@ class Look:
     view: np.ndarray  # (192, 192, 3) what the camera sees
     labels: np.ndarray  # (64, 64) what the net makes of it
     graph: object  # SceneGraphs of this view
-    q: np.ndarray  # (A,) values of the next actions, or None
-    action: int = None  # that led here, or None
-    bumped: bool = False  # whether something stopped it
+    q: np.ndarray | None  # (A,) values of the next actions, if known
+    action: int | None  # that led here; None at the start
+    bumped: bool  # whether something stopped it
 
 
 @dataclass
@@ -84,7 +86,7 @@ def frames(looks, world, grid):
     whole = home.copy()
     whole.path([look.pose for look in looks])
     for look in looks:
-        whole.place(look.answer, canvas.RIGHT)
+        whole.place(look.answer, RIGHT)
     whole.names()
     home.named = whole.named  # in all frames where the robot never comes
     panels = [_panels(look, grid) for look in looks]
@@ -110,11 +112,9 @@ def gif(shown):
     for i, picture in enumerate(stills):
         wall.paste(picture, (0, i * picture.height))
     # The colours that mean something stay as they are: no other one may be near them.
-    f = canvas
-    pale = (draw.PALETTE + 255.0) / 2  # labels under a graph
-    clouds = f.PAPER + np.linspace(0.2, 1, 9)[:, None] * np.subtract(f.BELIEF, f.PAPER)  # particles, few to many
-    exact = np.array([*draw.PALETTE, *pale, *clouds, *f.TINTS, f.PAPER, f.INK, f.QUIET, f.FAINT, f.ROBOT, f.RIGHT,
-                      f.WRONG])
+    pale = (PALETTE + 255.0) / 2  # labels under a graph
+    clouds = PAPER + np.linspace(0.2, 1, 9)[:, None] * np.subtract(BELIEF, PAPER)  # particles, few to many
+    exact = np.array([*PALETTE, *pale, *clouds, *TINTS, PAPER, INK, QUIET, FAINT, ROBOT, RIGHT, WRONG])
     others = np.array(wall.quantize(256 - len(exact)).getpalette()).reshape(-1, 3)
     others = others[abs(others[:, None] - exact).max(2).min(1) > 8]
     palette = Image.new("P", (1, 1))
@@ -140,22 +140,22 @@ def _panels(look, grid):
 
 def _frame(home, panel, looks, t, pose, doing, action=None):
     """One picture: look t, the robot at `pose`; `action` is the one that the planner has chosen, if it has."""
-    page, look, right = canvas.Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
-    verdict = canvas.RIGHT if right else canvas.WRONG
-    plan = home.copy()
-    plan.particles(look.particles)
-    plan.place(look.answer, verdict)
-    plan.sight(pose)
-    plan.path([*(earlier.pose for earlier in looks[:t + 1]), pose])
-    plan.robot(pose)
-    page.paste(plan.picture(), 4, 44)
+    page, look, right = Canvas(WIDTH_PX, HEIGHT_PX), looks[t], looks[t].answer == looks[t].place
+    verdict = RIGHT if right else WRONG
+    home = home.copy()
+    home.particles(look.particles)
+    home.place(look.answer, verdict)
+    home.sight(pose)
+    home.path([*(earlier.pose for earlier in looks[:t + 1]), pose])
+    home.robot(pose)
+    page.paste(home.picture(), 4, 44)
     page.text((24, 478), f"answer {'right' if right else 'wrong'}", 16, verdict)
     page.text((140, 479), f"belief in the true place (green) {look.pooled[look.place]:.2f}", 13)
     page.paste(draw.legend([], KEY), 24, 506)
     page.paste(draw.legend(), 24, 534)
 
     page.text((24, 26), f"look {t + 1} of {len(looks)}", 20)
-    page.text((142, 27), doing, 15, canvas.ROBOT)
+    page.text((142, 27), doing, 15, ROBOT)
     x0, x1 = WIDTH_PX - 2 * VIEW_PX - 2 * GAP_PX, WIDTH_PX - VIEW_PX - GAP_PX
     parts = [("the robot sees", x0, 72), ("it recognises", x1, 72), ("this view says", x0, 300),
              ("the filter believes", x1, 300), ("value of next action: the greatest is chosen", x0, 470)]
@@ -173,9 +173,9 @@ def _frame(home, panel, looks, t, pose, doing, action=None):
 def _tick(page, at, right=None):
     """A disc with a tick for a right answer or a cross for a wrong one; pale if there is none yet."""
     lines = {True: [[(-4, 0), (-1, 3), (4, -3)]], False: [[(-3, -3), (3, 3)], [(-3, 3), (3, -3)]], None: []}[right]
-    page.disc(at, 8, {True: canvas.RIGHT, False: canvas.WRONG, None: canvas.FAINT}[right])
+    page.disc(at, 8, {True: RIGHT, False: WRONG, None: FAINT}[right])
     for points in lines:
-        page.line(np.add(points, at), canvas.PAPER, 2)
+        page.line(np.add(points, at), PAPER, 2)
 
 
 def _actions(q, chosen, width_px=2 * VIEW_PX + GAP_PX):
@@ -183,14 +183,14 @@ def _actions(q, chosen, width_px=2 * VIEW_PX + GAP_PX):
 
     Bars would mislead: where all values are below zero, the best has the shortest.
     """
-    left, right, line_px = 70, width_px - 54, draw.LINE_PX
-    page = canvas.Canvas(width_px, line_px * len(ACTIONS))
+    left, right = 70, width_px - 54
+    page = Canvas(width_px, LINE_PX * len(ACTIONS))
     for a, name in enumerate(ACTIONS):
-        y, ink = line_px * a + 9, canvas.ROBOT if a == chosen else canvas.INK
+        y, ink = LINE_PX * a + 9, ROBOT if a == chosen else INK
         page.text((0, y), name, 12, ink)
         if q is not None:
-            page.line([(left, y), (right, y)], canvas.FAINT, 2)
+            page.line([(left, y), (right, y)], FAINT, 2)
             x = left + (right - left) * (q[a] - min(q)) / max(max(q) - min(q), 1e-9)
-            page.disc((x, y), 6, ink if chosen is None or a == chosen else canvas.BAR)
+            page.disc((x, y), 6, ink if chosen is None or a == chosen else BAR)
             page.text((width_px, y), f"{q[a]:+.2f}", 11, ink, "rm")
     return page.picture()

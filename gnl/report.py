@@ -12,12 +12,12 @@ from .files import check_folder, load_json, write_whole
 from .groundwork import check_settings
 from .outcomes import adapted, best_checkpoint, by_gap, by_world, curve, from_training, gains, groups, right
 from .paper import VIEW_MS, table_1
-from .table import path_of
+from .table import cell_path
 from .terminal import Stage, count
 
 SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
-PAIRS = ("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "Scan"), ("Ours+", "MV"), \
-    ("Ours+", "Scan"), ("Ours+", "Ours"), ("Oracle", "Ours")
+PAIRS = (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "Scan"), ("Ours+", "MV"),
+         ("Ours+", "Scan"), ("Ours+", "Ours"), ("Oracle", "Ours"))
 RESOLVED = 10, 5, 2.5, 1  # points, to be told apart
 FEW_CELLS = 10
 T_XY = "t_xy_m", "T_xy {} m"
@@ -60,7 +60,7 @@ def load(out):
         raise ValueError(f"{Path(out) / 'settings.json'}: expected the settings of a table, found {sorted(settings)}")
     made_from = {}
     for result, _ in cells:
-        path = path_of(out, Cell(**result["cell"]).name)
+        path = cell_path(out, Cell(**result["cell"]).name)
         check_settings(path, result.get("settings") or {}, settings)
         parts = made_from.setdefault(result["cell"]["world"], result.get("made from"))
         if parts != result.get("made from"):

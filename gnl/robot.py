@@ -34,15 +34,15 @@ class Motion:
 class Robot:
     """A home's obstacles in a pymunk space, and a body that is put where a robot is, one robot after the other."""
 
-    def __init__(self, world, motion=Motion(), radius_m=ROBOT_RADIUS_M):  # noqa: B008 (frozen)
-        self.motion = motion
+    def __init__(self, world, motion=None, radius_m=ROBOT_RADIUS_M):
+        self.motion = motion or Motion()
         self.space, self.body = pymunk.Space(), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         for (x, y), (a, b), angle in zip(world.centre[world.blocks], world.half[world.blocks],
                                          world.angle[world.blocks], strict=True):
-            turn = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
+            placed = pymunk.Transform(np.cos(angle), np.sin(angle), -np.sin(angle), np.cos(angle), x, y)
             corners = [(a, b), (-a, b), (-a, -b), (a, -b)]
             # The shapes are thick, not the query: pymunk leaves out every shape whose bounds the bare line misses.
-            self.space.add(pymunk.Poly(self.space.static_body, corners, turn, radius_m))
+            self.space.add(pymunk.Poly(self.space.static_body, corners, placed, radius_m))
 
     def step(self, poses, actions, rng):
         """Act once with each robot: poses (B, 3), actions (B,) -> poses (B, 3), odometry (B, 2), bumped (B,) bool.
@@ -75,7 +75,7 @@ class Robot:
 
 
 def check_actions(actions, n, n_actions=N_ACTIONS):
-    """The actions as ints 0 .. n_actions - 1, (n,); ValueError if they are none."""
+    """The actions as ints (n,); ValueError unless they are n whole numbers 0 .. n_actions - 1."""
     actions = np.asarray(actions)
     if actions.shape != (n,) or not np.isin(actions, range(n_actions)).all():
         raise ValueError(f"actions: expected {n} whole numbers 0..{n_actions - 1}, "

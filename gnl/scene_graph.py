@@ -43,13 +43,9 @@ class SceneGraphs:
     def __len__(self):
         return len(self.starts) - 1
 
-    def __getitem__(self, index):
-        """Graph `index` alone, or those of a slice or a mask."""
-        return self.pick(np.atleast_1d(np.arange(len(self))[index]))
-
-    def pick(self, chosen):
-        """The graphs `chosen`, in that order: numbers (n,), repeats allowed, or a mask (B,)."""
-        chosen = np.arange(len(self))[list(chosen)]  # a tuple would index dimensions, an empty array has floats
+    def __getitem__(self, chosen):
+        """Graphs as of an array: that of a number, or those of a slice, a mask (B,) or numbers (n,) in their order."""
+        chosen = np.atleast_1d(np.arange(len(self))[chosen])
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
         edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
         shift = np.repeat(starts[:-1] - self.starts[chosen], np.diff(edge_starts))
@@ -165,8 +161,8 @@ def edges_of(boxes, starts):
     return np.stack([i[near], j[near]], 1)
 
 
-def words_in_words(words):
-    """The words spelled out: (N,) -> list of (class, size, location), each 0-based."""
+def unpack_words(words):
+    """What each word joins, the inverse of `word_of`: (N,) -> list of (class, size, location), each from 0 on."""
     rest, location = np.divmod(words, GRID * GRID)
     label, size = np.divmod(rest, N_SIZES)
     return list(zip(label.tolist(), size.tolist(), location.tolist(), strict=True))

@@ -124,7 +124,7 @@ def forward(params, rgb, learning=True):
 
 
 def standardise(rgb, dtype=np.float32):
-    """Colours less the view's mean over its spread, quad by quad: (B, H, H, 3) uint8 -> (B, H / 4, H / 4, 4, 12)."""
+    """Colours less the view's mean over its spread, quad by quad: (B, H, W, 3) uint8 -> (B, H / 4, W / 4, 4, 12)."""
     B, H, W, _ = rgb.shape
     # Of each quad the two rows, each two pixels and so six numbers that lie side by side.
     order = np.arange(H * W // 2).reshape(H // 4, 2, 2, W // 4, 2).transpose(0, 3, 1, 4, 2).ravel()
@@ -176,7 +176,7 @@ def backward(params, dscores, cache):
 
 
 def predict(params, rgb, chunk=8):
-    """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. Few views at once stay in the cache."""
+    """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. So few at once stay near the processor."""
     labels = np.empty(rgb.shape[:3], np.uint8)
     for i in range(0, len(rgb), chunk):
         scores, _ = forward(params, rgb[i:i + chunk], learning=False)

@@ -56,7 +56,7 @@ class Strip:
         return tuple(a.reshape(self.n_views, self.n_columns, -1) for a in (near, far, boxes))
 
 
-def rim():
+def rim_slope():
     """Slope of a ray at the left or upper rim of a view: tan(fov / 2)."""
     if not 0 < FIELD_OF_VIEW_RAD < np.pi:
         raise ValueError(f"field of view: expected more than 0 and less than pi, found {FIELD_OF_VIEW_RAD}")
@@ -65,7 +65,7 @@ def rim():
 
 def slopes(n_columns):
     """Slope s = left / ahead of each column's ray, column 0 the leftmost: (C,)."""
-    return rim() * (1 - (2 * np.arange(n_columns) + 1) / n_columns)
+    return rim_slope() * (1 - (2 * np.arange(n_columns) + 1) / n_columns)
 
 
 def cast(world, poses, n_columns=512):
@@ -80,7 +80,7 @@ def cast(world, poses, n_columns=512):
     inside = ~(outside[0] | outside[1])
     near_lines[:, 0, inside] = [[1 / NEAREST_M], [0]]
 
-    # Faces, each as k * V + box, that fill a column at least; those of full-height walls first.
+    # Faces that fill a column at least, face k of box v in view as k * V + v; those of full-height walls first.
     closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height)).take(box)
     walls, others = np.flatnonzero((end > begin) & closes), np.flatnonzero((end > begin) & ~closes)
     face = np.append(walls, others)
@@ -107,9 +107,9 @@ def cast(world, poses, n_columns=512):
     np.maximum.at(w_wall, ray[:n_wall], w_in[:n_wall])
     kept = np.flatnonzero(w_in >= w_wall.take(ray))
     owner = owner.take(kept)
-    side = np.where(face < V, 0, 1) + 2 * away.take(face)  # where the box's own axis points away one sees its other end
-    face = box.take(seen) * FACES + side
-    return Strip(B, C, ray.take(kept), w_in.take(kept), face.take(owner), seen.take(owner), exits, slope, w_wall)
+    side = (face >= V) + 2 * away.take(face)  # where the box's own axis points away one sees its other end
+    shown = box.take(seen) * FACES + side
+    return Strip(B, C, ray.take(kept), w_in.take(kept), shown.take(owner), seen.take(owner), exits, slope, w_wall)
 
 
 def _boxes_in_view(world, poses):
@@ -146,7 +146,7 @@ def _columns_of_faces(axes, near, far, n_columns):
     along_1 = np.array([np.where(outside[0], far[1], near[1]), near[1], near[1]])
     x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
     front = x > IN_FRONT_M
-    column = np.ceil((1 - y / np.where(front, x, 1) / rim()) * C / 2 - 0.5)
+    column = np.ceil((1 - y / np.where(front, x, 1) / rim_slope()) * C / 2 - 0.5)
     # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
     first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
     behind = np.array([first, np.where(front[0], C - first, first), C - first])

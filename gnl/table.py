@@ -6,8 +6,8 @@ import threading
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_of, load_cell, made_from, run_cell, to_bytes
-from .files import check_folder, load_json, write_whole
+from .experiment import GAPS_DEG, GAPS_M, N_CHECKPOINTS, Cell, costs_path, load_cell, made_from, run_cell
+from .files import check_folder, load_json, save_json
 from .gcn import BATCH, EPOCHS, RATE
 from .groundwork import check_settings, load_starts, prepare
 from .paper import WORLDS
@@ -61,22 +61,22 @@ def run(args):
     check_folder("--out", args.out)
     agree(out, asdict(settings))
     todo = [cell for cell in cells if not finished(out, cell.name, load_cell, asdict(settings))]
-    write_whole(out / "settings.json", to_bytes(asdict(settings)))
+    save_json(out / "settings.json", asdict(settings))
     if todo:
         with executor(args.jobs, args.dask) as pool:
             run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
     print(f"{count(len(cells), 'cell')} in {out / 'cells'}; `report --out {out}` tells what they say")
 
 
-def jobs_of(out, settings, cells, todo, jobs, pool):
+def jobs_of(out, settings, cells, todo, n_processes, pool):
     """A job for each of the cells to do, home by home.
 
     ValueError before the first of a home, if one that is done was made from another home, net or classifier
     """
-    for world, senses in prepare(out, settings, todo, jobs, pool):
+    for world, senses in prepare(out, settings, todo, n_processes, pool):
         for cell in cells:
             if cell.world == world and cell not in todo:
-                check_parts(path_of(out, cell.name), senses)
+                check_parts(cell_path(out, cell.name), senses)
         for cell in todo:
             if cell.world == world:
                 yield cell.name, run_cell, cell, senses, load_starts(out, cell, settings), asdict(settings)
@@ -100,9 +100,9 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
     def keep(future):
         """Called by a thread of the pool when a job is done, whatever this one waits for."""
         try:
-            path, (result, costs) = path_of(out, waiting[future]), future.result()
-            write_whole(costs_of(path), to_bytes(costs))
-            write_whole(path, to_bytes(result))
+            path, (result, costs) = cell_path(out, waiting[future]), future.result()
+            save_json(costs_path(path), costs)
+            save_json(path, result)
             del waiting[future]
         except BaseException as error:  # a thread has nobody to tell
             faults.append(error)
@@ -174,10 +174,10 @@ def agree(out, settings):
 def finished(out, name, load, settings=None):
     """Whether both files of a cell are there and load(path) finds them whole, and of these settings.
 
-    Damaged ones are named and set aside; of other settings there may be none.
+    Damaged ones are named and set aside; ValueError for whole ones of other settings.
     """
-    path = path_of(out, name)
-    files = path, costs_of(path)
+    path = cell_path(out, name)
+    files = path, costs_path(path)
     if not all(file.exists() for file in files):
         return False
     try:
@@ -192,6 +192,6 @@ def finished(out, name, load, settings=None):
     return True
 
 
-def path_of(out, name):
+def cell_path(out, name):
     """The file of a cell's outcomes."""
     return Path(out) / "cells" / f"{name}.json"

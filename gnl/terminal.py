@@ -118,10 +118,10 @@ def processes(n):
 
 
 @contextmanager
-def executor(jobs, address=None):
-    """Where jobs run: so many processes beside this one, or the cluster of a dask scheduler."""
+def executor(n_processes, address=None):
+    """Where jobs run: in n_processes beside this one, or on the cluster of a dask scheduler."""
     if address is None:
-        with processes(jobs) as pool:
+        with processes(n_processes) as pool:
             yield pool
         return
     try:

@@ -16,9 +16,10 @@ import zlib
 import numpy as np
 
 from . import floor_plan
+from .checks import check_finite
 from .classes import CEILING, DOOR, FLOOR, WALL, class_of
 from .free_space import FreeSpace, box_distance
-from .polygons import columns, cover_polygon
+from .polygons import cover_polygon, footprints
 
 WALL_THICKNESS_M = 0.1
 LEAF_THICKNESS_M = 0.04
@@ -55,7 +56,7 @@ class World:
         walls = [_panel(wall, WALL_THICKNESS_M, 0.0, self.wall_height, WALL, wall_colour) for wall in plan["walls"]]
         doors = plan.get("doors", [])
         shut = [_panel(d["segment"], WALL_THICKNESS_M, 0.0, self.wall_height, DOOR, wall_colour) for d in doors]
-        self.free_space = FreeSpace(self.bounds, *columns(walls + shut))
+        self.free_space = FreeSpace(self.bounds, *footprints(walls + shut))
         boxes = walls + [box for door in doors for box in self._door(door, walls, wall_colour, rng)]
         gaps = np.array([d["segment"] for d in doors], float).reshape(-1, 2, 2).mean(1)
         for thing in plan.get("objects", []):
@@ -67,7 +68,7 @@ class World:
             boxes += [(*box, z0, z0 + thing["height"], label, *colour) for box in cover_polygon(thing["polygon"])]
 
         boxes = np.array(boxes, float)
-        self.centre, self.half, self.angle = columns(boxes)
+        self.centre, self.half, self.angle = footprints(boxes)
         self.half = self.half.clip(THINNEST_M / 2)
         self.z, self.label, self.colour = boxes[:, 5:7], boxes[:, 7].astype(np.uint8), boxes[:, 8:11]
         self.z[:, 1] = self.z[:, 1].clip(self.z[:, 0] + THINNEST_M)
@@ -86,14 +87,14 @@ class World:
 
     def is_free(self, xy, radius_m=ROBOT_RADIUS_M):
         """Whether a disc at each point is inside the home and touches nothing: (n, 2) -> (n,) bool."""
-        xy, b = _points(xy), self.blocks
+        xy, b = _check_xy(xy), self.blocks
         distance = box_distance(xy, self.centre[b], self.half[b], self.angle[b]).min(1, initial=np.inf)
         return self.free_space.inside(xy) & (distance > radius_m)
 
     def is_reachable(self, xy, radius_m=ROBOT_RADIUS_M):
         """Whether a disc at each point is free and in the largest region that it can roam: (n, 2) -> (n,) bool."""
-        xy = _points(xy)
-        reachable = self.free_space.look_up(self.free_space.largest_room(radius_m), xy)
+        xy = _check_xy(xy)
+        reachable = self.free_space.look_up(self.free_space.largest_region(radius_m), xy)
         reachable[reachable] = self.is_free(xy[reachable], radius_m)
         return reachable
 
@@ -101,8 +102,9 @@ class World:
         """Points of a raster within a room of the plan: (n, 2)."""
         parts = cover_polygon(room["polygon"])
         low, high = np.min(room["polygon"], 0), np.max(room["polygon"], 0)
-        spots = np.stack(np.meshgrid(*map(np.arange, low + step_m / 2, high, [step_m] * 2)), -1).reshape(-1, 2)
-        return spots[box_distance(spots, *columns(parts)).min(1) == 0]
+        x, y = (np.arange(a + step_m / 2, b, step_m) for a, b in zip(low, high, strict=True))
+        spots = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
+        return spots[box_distance(spots, *footprints(parts)).min(1) == 0]
 
     def out_of_reach(self):
         """Types of the rooms that no robot gets into: a doorway may be missing."""
@@ -110,7 +112,7 @@ class World:
                 if not self.is_reachable(self.spots_in(room)).any()]
 
     def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
-        """n poses uniform over the free space that hangs together, bearings uniform: (n, 3)."""
+        """n poses uniform over the largest region of free space, bearings uniform: (n, 3)."""
         poses, drawn = np.empty((0, 3)), 0
         while len(poses) < n:
             draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 1000, 3))
@@ -139,7 +141,7 @@ class World:
         is_open = (door.get("state") or ("closed" if leads_out else "open")) == "open"
         # A segment along a wall is no gap: a folding door that stands open there. (One spot alone: a wall ends in it.)
         spots = hinge + np.array([[0.25], [0.5], [0.75]]) * (end - hinge)
-        walled = box_distance(spots, *columns(walls)).min(1) < 0.1
+        walled = box_distance(spots, *footprints(walls)).min(1) < 0.1
         folded = walled[1] and walled.sum() > 1
         if is_open and not folded:
             end = hinge + left * np.hypot(*(end - hinge))
@@ -149,13 +151,12 @@ class World:
         return boxes
 
 
-def _points(xy):
-    """Points as floats (n, 2); ValueError if they are none."""
+def _check_xy(xy):
+    """The points as floats (n, 2); ValueError for another shape, NaN or infinity."""
     xy = np.asarray(xy, float)
     if xy.size and xy.shape[-1:] != (2,):
         raise ValueError(f"xy: expected shape (n, 2), found {xy.shape}")
-    if not np.isfinite(xy).all():
-        raise ValueError(f"xy: expected finite numbers, found {xy[~np.isfinite(xy)][0]}")
+    check_finite("xy", xy)
     return xy.reshape(-1, 2)
 
 

@@ -17,13 +17,13 @@ from gnl.__main__ import main
 from gnl.choices import CHOICES, OURS, TRUE_LABELS, Choice
 from gnl.compare import paired_difference
 from gnl.episode import Rules
-from gnl.experiment import costs_of, made_from, to_bytes
-from gnl.files import write_whole
+from gnl.experiment import costs_path, made_from
+from gnl.files import save_json
 from gnl.gcn import GCN
 from gnl.places import PlaceGrid
 from gnl.robot import Motion
 from gnl.senses import Senses
-from gnl.table import Settings, path_of
+from gnl.table import Settings, cell_path
 from gnl.world import ROBOT_RADIUS_M
 
 PAGE = Path(__file__).parents[1] / "tutorials" / "open_points.md"
@@ -176,9 +176,9 @@ def write_outcomes(out, choices):
     rng = np.random.default_rng(0)
     for choice, cell in itertools.product(choices, ablate.CELLS):
         tests = {name: {"place": ["".join(rng.choice(["0", "1"], 50)) for _ in range(5)]} for name in ("MV", "Ours")}
-        path = path_of(out, ablate.name_of(choice, cell))
-        write_whole(path, to_bytes({"name": ablate.name_of(choice, cell), "tests": tests}))
-        write_whole(out / "costs" / path.name, b"{}")
+        path = cell_path(out, ablate.name_of(choice, cell))
+        save_json(path, {"name": ablate.name_of(choice, cell), "tests": tests})
+        save_json(out / "costs" / path.name, {})
 
 
 @pytest.mark.parametrize(("choice", "beside"), [(NO_EDGES, OURS), (TRUE_LABELS, OURS), (HIGHER, TRUE_LABELS)])
@@ -190,7 +190,7 @@ def test_an_effect_is_the_difference_in_pairs_from_our_choice_and_with_true_labe
     assert row[:3] == [choice.point, choice.other, beside.other]
     for column, method in ((3, "MV"), (4, "Ours")):
         def right(choice, method=method):
-            files = [path_of(tmp_path, ablate.name_of(choice, cell)).read_bytes() for cell in ablate.CELLS]
+            files = [cell_path(tmp_path, ablate.name_of(choice, cell)).read_bytes() for cell in ablate.CELLS]
             return np.array([one == "1" for file in files for one in json.loads(file)["tests"][method]["place"][-1]])
 
         d, low, high = (100 * value for value in paired_difference(right(choice), right(beside)))
@@ -201,10 +201,10 @@ def test_an_effect_is_the_difference_in_pairs_from_our_choice_and_with_true_labe
 def test_where_no_answer_changed_the_effect_is_nothing_without_an_interval(tmp_path):
     write_outcomes(tmp_path, [OURS, NO_EDGES])
     for cell in ablate.CELLS:
-        ours, other = (json.loads(path_of(tmp_path, ablate.name_of(choice, cell)).read_bytes())
+        ours, other = (json.loads(cell_path(tmp_path, ablate.name_of(choice, cell)).read_bytes())
                        for choice in (OURS, NO_EDGES))
         other["tests"]["MV"] = ours["tests"]["MV"]
-        path_of(tmp_path, ablate.name_of(NO_EDGES, cell)).write_bytes(to_bytes(other))
+        save_json(cell_path(tmp_path, ablate.name_of(NO_EDGES, cell)), other)
     row = ablate.effects(tmp_path, [NO_EDGES])[0]
     assert row[3] == "0"
     assert row[4] != "0"
@@ -253,8 +253,8 @@ def test_runs_of_another_net_are_refused_before_new_ones_are_compared_with_them(
     for choice, cell in itertools.product([OURS, TRUE_LABELS], ablate.CELLS):
         name = ablate.name_of(choice, cell)
         result = ours | {"name": name, "made from": made_from(senses) | {"net": "12345678"}}
-        for path, value in ((path_of(tmp_path, name), result), (costs_of(path_of(tmp_path, name)), costs)):
-            write_whole(path, to_bytes(value))
+        for path, value in ((cell_path(tmp_path, name), result), (costs_path(cell_path(tmp_path, name)), costs)):
+            save_json(path, value)
     for name, value in (("prepare", lambda *_: dict.fromkeys((800, 801, 809), senses)),
                         ("executor", contextlib.nullcontext)):
         monkeypatch.setattr(ablate, name, value)
@@ -262,7 +262,7 @@ def test_runs_of_another_net_are_refused_before_new_ones_are_compared_with_them(
         main(["ablate", "--out", str(tmp_path), "--points", "edges"])
     assert exit.value.code == 2
     assert "'net': '12345678'" in capsys.readouterr().err.split("found one made from")[1]
-    assert not path_of(tmp_path, ablate.name_of(edges, CELL)).exists()
+    assert not cell_path(tmp_path, ablate.name_of(edges, CELL)).exists()
 
 
 def test_effects_go_into_the_rows_of_their_points_and_nowhere_else():

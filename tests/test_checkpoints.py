@@ -87,9 +87,9 @@ def test_checkpoints_cost_little_beside_the_states():
         store.learn(known[which], rng.integers(A, size=32), np.ones(32), known[which], np.ones(32, bool))
         if step % 10 == 9:
             store.checkpoint()
-    log = sum(changed.nbytes + values.nbytes for entry in store.log.entries for _, changed, values in entry)
+    log = sum(changed.nbytes + values.nbytes for entry in store.checkpoints.entries for _, changed, values in entry)
     states = sum(len(values) for values in store.values) * 360 * 4
-    changes = sum(len(changed) for entry in store.log.entries for _, changed, _ in entry)
+    changes = sum(len(changed) for entry in store.checkpoints.entries for _, changed, _ in entry)
     assert log == 12 * changes
     assert log < 0.05 * states  # measured: 0.014
 
@@ -116,7 +116,7 @@ def test_a_checkpoint_without_news_logs_nothing():
     store = lived(5)
     store.checkpoint()
     store.checkpoint()
-    assert all(len(changed) == len(values) == 0 for _, changed, values in store.log.entries[1])
+    assert all(len(changed) == len(values) == 0 for _, changed, values in store.checkpoints.entries[1])
 
 
 @pytest.mark.parametrize("n_checkpoints", [0, 3])
@@ -132,10 +132,10 @@ def test_a_saved_store_is_read_back_with_its_past_and_goes_on_as_the_other(tmp_p
         for step in transitions(10, 3):
             both.learn(*step)
         both.checkpoint()
-    sizes = [[len(changed) for _, changed, _ in both.log.entries[-1]] for both in (again, store)]
+    sizes = [[len(changed) for _, changed, _ in both.checkpoints.entries[-1]] for both in (again, store)]
     assert sizes[0] == sizes[1]
     asked = random_states(np.random.default_rng(5), 40)
-    assert len(again.log) == n_checkpoints + 1
+    assert len(again.checkpoints) == n_checkpoints + 1
     for i in range(n_checkpoints + 1):
         np.testing.assert_array_equal(again.at(i).q_values(asked), store.at(i).q_values(asked))
     np.testing.assert_array_equal(again.q_values(asked), store.q_values(asked))

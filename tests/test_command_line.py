@@ -187,7 +187,7 @@ def test_the_labels_are_never_drawn_over(tmp_path, capsys):
     path = write(tmp_path / "labels.png")
     before = path.read_bytes()
     assert run("graph", path, "--out", tmp_path / ".." / tmp_path.name / "labels.png") == 2
-    assert "--out: expected another file than the labels, found " in capsys.readouterr().err
+    assert "--out: expected a file other than the labels, found " in capsys.readouterr().err
     assert path.read_bytes() == before
 
 

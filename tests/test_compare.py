@@ -129,7 +129,7 @@ def test_no_fewer_episodes_would_do():
 
 
 def test_no_number_of_episodes_shows_a_difference_of_nothing():
-    with pytest.raises(ValueError, match="difference: expected another than 0"):
+    with pytest.raises(ValueError, match="difference: expected a number other than 0"):
         episodes_needed(0, 0.5)
 
 

@@ -236,7 +236,7 @@ def settings_of(monkeypatch, tmp_path, two_rooms):
         monkeypatch.setattr(demo.Senses, "look_around", lambda *_: None)
         monkeypatch.setattr(parts_learned, "fixed_scan", lambda *args: keep(*args[:2], args[5]) or list)
         args = SimpleNamespace(out=tmp_path, views="", plan="", seed=0, noise=noise)
-        demo.learn(args, demo.Scale(**scale), None, world, demo.PlaceGrid(world), None)
+        demo.learn(args, demo.Scale(**scale), None, world, None, demo.PlaceGrid(world))
         return settings
 
     return settings_of

@@ -56,7 +56,7 @@ def test_the_reward_is_that_of_the_rules_and_who_watches_sees_what_the_store_is_
     assert len(looks) == 4
     for step, (told, seen) in enumerate(zip(diary.steps, looks[1:], strict=True), 1):
         states, actions, rewards, next_states, _ = told
-        for name, value in (("seen", states), ("actions", actions), ("states", next_states)):
+        for name, value in (("before", states), ("actions", actions), ("states", next_states)):
             np.testing.assert_array_equal(seen[name], value)
         np.testing.assert_array_equal(rewards, seen["belief"] + 10 * seen["right"] + 100 * (step == 3)
                                       + 1000 * seen["actions"])
@@ -88,7 +88,7 @@ def test_training_explores_first_then_keeps_checkpoints_and_says_how_far_it_is()
     told = []
     learner = train_nnql(Sense(knows), Glide(), GRID, starts(100), 0, checkpoint_every=40,
                          progress=lambda share, right: told.append((share, right)))
-    assert len(learner.log) == 2  # after 40 and 80 episodes
+    assert len(learner.checkpoints) == 2  # after 40 and 80 episodes
     assert [share for share, _ in told] == [0.4, 0.8, 1.0]
     assert {right for _, right in told} == {1.0}
     stored = sum(len(values) for values in learner.values)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import full_disk
 
-from gnl.files import FORMAT, check_folder, load_arrays, save_arrays, write_whole
+from gnl.files import FORMAT, check_folder, load_arrays, save_arrays, save_json, write_whole
 
 
 def header(**content):
@@ -248,3 +248,9 @@ def test_a_write_leaves_the_mask_of_rights_as_it_was(tmp_path):
         assert os.umask(0o027) == 0o027
     finally:
         os.umask(before)
+
+
+def test_equal_values_are_equal_files_of_json(tmp_path):
+    save_json(tmp_path / "one", {"b": 1, "a": [2, None]})
+    save_json(tmp_path / "other", {"a": [2, None], "b": 1})
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "other").read_bytes() == b'{"a":[2,null],"b":1}\n'

@@ -81,18 +81,18 @@ def test_a_home_without_a_side_is_inside_up_to_its_bounds():
     assert space.inside([[0.1, 2], [5, 2], [-0.2, 2], [3, 4.2]]).tolist() == [True, True, False, False]
 
 
-def test_the_largest_room_is_the_larger_one():
+def test_the_largest_region_is_the_larger_room():
     space = walled((0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0), (2, 0, 2, 4))
-    room = space.largest_room(0.2)
+    room = space.largest_region(0.2)
     assert space.look_up(room, [[4, 2], [1, 2], [2.1, 2], [5.9, 2]]).tolist() == [True, False, False, False]
-    assert not space.largest_room(3.0).any()
+    assert not space.largest_region(3.0).any()
 
 
 def test_what_is_not_an_obstacle_takes_no_room():
     free = World(room(thing("other", 3, 2, 2, 2, 0.02), thing("other", 3, 2, 1, 1, 0.3, z0=2.0))).free_space
     taken = World(room(thing("table", 3, 2, 2, 2, 0.7))).free_space
-    assert free.look_up(free.largest_room(0.2), [[3, 2]])
-    assert not taken.look_up(taken.largest_room(0.2), [[3, 2]])
+    assert free.look_up(free.largest_region(0.2), [[3, 2]])
+    assert not taken.look_up(taken.largest_region(0.2), [[3, 2]])
 
 
 def test_nothing_is_inside_beyond_the_raster():

@@ -224,7 +224,7 @@ def test_a_file_that_is_no_store_is_refused(tmp_path, change):
                          ids=lambda change: next(iter(change)))
 def test_a_store_that_does_not_fit_together_is_refused_by_name(tmp_path, change):
     path, store = tmp_path / "store.npz", lived(5)
-    store.log = Checkpoints(A)
+    store.checkpoints = Checkpoints(A)
     for _ in range(2):
         store.checkpoint()
     store.save(path, "a test")
@@ -237,7 +237,7 @@ def test_a_store_that_does_not_fit_together_is_refused_by_name(tmp_path, change)
 
 
 def test_no_neighbours_are_refused():
-    with pytest.raises(ValueError, match="k: expected a whole number from 1 to inf, found 0"):
+    with pytest.raises(ValueError, match="k: expected a whole number from 1 on, found 0"):
         NNQL(K, A, k=0)
 
 

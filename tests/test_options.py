@@ -17,10 +17,11 @@ def ranking(*first, n=K):
 
 
 def lived(*steps):
-    """An Experience of steps (seen, action, state, place), one robot each."""
+    """An Experience of steps (before, action, after, place), one robot each."""
     experience = Experience()
-    for seen, action, state, place in steps:
-        experience.watch(1, seen=seen[None], actions=np.array([action]), states=state[None], places=np.array([place]))
+    for before, action, after, place in steps:
+        experience.watch(1, before=before[None], actions=np.array([action]), states=after[None],
+                         places=np.array([place]))
     return experience
 
 
@@ -34,18 +35,18 @@ def options_of(experience, length, k, worth=(0, 0, 0)):
 def test_an_experience_is_the_steps_and_how_well_the_true_place_ranked_after_each():
     a, b = ranking(3, 1), ranking(1, 3)
     experience = lived((a, 0, b, 3), (b, 2, a, 3))
-    experience.watch(0, seen=None, actions=None, states=a[None], places=np.array([0]))  # the first look is no step
-    steps, seen, actions, states, rewards = experience.arrays()
+    experience.watch(0, before=None, actions=None, states=a[None], places=np.array([0]))  # the first look is no step
+    steps, before, actions, after, rewards = experience.arrays()
     assert (steps.tolist(), actions.tolist(), rewards.tolist()) == ([1, 1], [0, 2], [0.5, 1.0])
-    np.testing.assert_array_equal(seen, [a, b])
-    np.testing.assert_array_equal(states, [b, a])
+    np.testing.assert_array_equal(before, [a, b])
+    np.testing.assert_array_equal(after, [b, a])
 
 
 def test_what_is_enough_is_enough(monkeypatch):
     monkeypatch.setattr(options, "MOST_STEPS", 5)
     a = ranking(3, 1)
-    steps, seen, *_ = lived(*[(a, 0, a, 3)] * 9).arrays()
-    assert len(steps) == len(seen) == 5
+    steps, before, *_ = lived(*[(a, 0, a, 3)] * 9).arrays()
+    assert len(steps) == len(before) == 5
     experience, four = Experience(), np.tile(a, (4, 1))
     for step in range(9):
         experience.watch(step, four, np.zeros(4, int), four, np.zeros(4, int))
@@ -76,7 +77,7 @@ def test_over_all_first_views_an_option_is_worth_what_it_was_in_the_race():
 def test_only_first_views_are_compared_with_the_race_and_later_steps_teach_nonetheless():
     a, b, c = ranking(1, 2, 3), ranking(11, 12, 13), ranking(11, 12, 21)  # c is nearest to b
     experience = lived((a, 0, b, 12))
-    experience.watch(2, seen=b[None], actions=np.array([0]), states=c[None], places=np.array([11]))
+    experience.watch(2, before=b[None], actions=np.array([0]), states=c[None], places=np.array([11]))
     made = options_of(experience, 2, 1, worth=(0.3, 0, 0))
     assert made.values(a[None])[0, 0] == pytest.approx((1 / 2 + 1) / 2)
     assert made.q_values(a[None])[0, 0] == pytest.approx(0.3)
@@ -132,7 +133,7 @@ def test_the_better_direction_is_found_where_it_depends_on_the_first_view():
         kind, action = rng.integers(2), rng.integers(N_ACTIONS)
         state, good = view(kind), action == kind
         place = np.argsort(-state)[0 if rng.random() < (0.6 if good else 0.4) else 3]
-        experience.watch(1, seen=view(kind)[None], actions=np.array([action]), states=state[None],
+        experience.watch(1, before=view(kind)[None], actions=np.array([action]), states=state[None],
                          places=np.array([place]))
     plan = planners.go_on(planners.greedy(options_of(experience, 4, 100)))
     kind = np.arange(60) % 2

@@ -7,17 +7,17 @@ import pytest
 
 from gnl.outcomes import (
     adapted,
-    arrays,
     by_gap,
     by_world,
     curve,
+    from_strings,
     from_training,
     gains,
     groups,
     latest_best,
-    outcomes,
+    outcome_of,
     right,
-    strings,
+    to_strings,
 )
 from gnl.places import PlaceGrid
 
@@ -26,28 +26,28 @@ def test_a_right_place_with_a_wrong_bearing_is_a_right_location():
     grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
     answers, places = np.array([[5, 5], [5, 17], [5, 6]]), np.array([[5, 6], [17, 17], [5, 18]])
     record = SimpleNamespace(answers=answers, places=places, correct=answers == places)
-    assert outcomes(grid, record) == {"place": ["101", "010"], "location": ["101", "110"]}
+    assert outcome_of(grid, record) == {"place": ["101", "010"], "location": ["101", "110"]}
 
 
 def test_who_looks_no_further_keeps_to_his_last_answer():
     grid = PlaceGrid(SimpleNamespace(bounds=(0, 0, 8, 6)))
     answers, places = np.array([[5, 5], [5, 17]]), np.array([[5, 6], [17, 17]])
     record = SimpleNamespace(answers=answers, places=places, correct=answers == places)
-    assert outcomes(grid, record, 4) == {"place": ["10", "01", "01", "01"], "location": ["10", "11", "11", "11"]}
-    assert outcomes(grid, record, 1) == outcomes(grid, record)
+    assert outcome_of(grid, record, 4) == {"place": ["10", "01", "01", "01"], "location": ["10", "11", "11", "11"]}
+    assert outcome_of(grid, record, 1) == outcome_of(grid, record)
 
 
 def test_strings_and_arrays_are_each_others_inverse():
     rng = np.random.default_rng(0)
     there = rng.random((7, 5)) < 0.5
-    assert strings(there)[2] == "".join("1" if one else "0" for one in there[:, 2])
-    np.testing.assert_array_equal(arrays(strings(there)), there)
+    assert to_strings(there)[2] == "".join("1" if one else "0" for one in there[:, 2])
+    np.testing.assert_array_equal(from_strings(to_strings(there)), there)
 
 
 @pytest.mark.parametrize("looks", [["01", "0"], ["0x"], ["01", "1 "]], ids=str)
 def test_looks_that_are_no_strings_of_right_and_wrong_are_refused(looks):
     with pytest.raises(ValueError, match="looks that are no strings of 0 and 1, all equally long"):
-        arrays(looks)
+        from_strings(looks)
 
 
 @pytest.mark.parametrize(("values", "best"), [([1, 3, 2], 1), ([3, 1, 3], 2), ([2, 2, 2], 2), ([5], 0)])

@@ -14,7 +14,7 @@ from scipy import stats
 
 from gnl import draw_charts, report
 from gnl.__main__ import main
-from gnl.experiment import to_bytes
+from gnl.files import save_json
 from gnl.paper import table_1
 
 N = 40
@@ -50,8 +50,8 @@ def folder(tmp_path_factory):
         for kind, value in (("cells", result), ("costs", costs)):
             path = out / kind / f"{world}-{m:g}m-{deg}deg-seed0.json"
             path.parent.mkdir(exist_ok=True)
-            path.write_bytes(to_bytes(value))
-    (out / "settings.json").write_bytes(to_bytes(SETTINGS))
+            save_json(path, value)
+    save_json(out / "settings.json", SETTINGS)
     return out
 
 
@@ -374,7 +374,7 @@ def test_a_cell_that_lacks_a_part_is_named(folder, tmp_path, capsys, missing):
     path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
     result = json.loads(path.read_bytes())
     del result[missing]
-    path.write_bytes(to_bytes(result))
+    save_json(path, result)
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path / "one")])
     err = capsys.readouterr().err
@@ -388,7 +388,7 @@ def test_a_cell_of_nine_checkpoints_is_named(folder, tmp_path, capsys):
     path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
     result = json.loads(path.read_bytes())
     result["checkpoints"].pop()
-    path.write_bytes(to_bytes(result))
+    save_json(path, result)
     with pytest.raises(SystemExit):
         main(["report", "--out", str(tmp_path / "one")])
     assert "found ValueError('9 checkpoints, 10 validated')" in capsys.readouterr().err
@@ -397,7 +397,7 @@ def test_a_cell_of_nine_checkpoints_is_named(folder, tmp_path, capsys):
 def test_cells_of_other_settings_are_not_mixed(folder, tmp_path, capsys):
     shutil.copytree(folder, tmp_path / "one", ignore=shutil.ignore_patterns("report"))
     path = tmp_path / "one" / "cells" / "800-1m-90deg-seed0.json"
-    path.write_bytes(to_bytes(json.loads(path.read_bytes()) | {"settings": SETTINGS | {"episodes": 320}}))
+    save_json(path, json.loads(path.read_bytes()) | {"settings": SETTINGS | {"episodes": 320}})
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path / "one")])
     assert exit.value.code == 2
@@ -409,7 +409,7 @@ def test_cells_of_other_settings_are_not_mixed(folder, tmp_path, capsys):
 def test_cells_of_one_home_that_were_made_from_other_parts_are_not_mixed(folder, tmp_path, capsys):
     shutil.copytree(folder, tmp_path / "mixed")
     path = tmp_path / "mixed" / "cells" / "800-1m-90deg-seed0.json"
-    path.write_bytes(to_bytes(json.loads(path.read_bytes()) | {"made from": {"net": "another"}}))
+    save_json(path, json.loads(path.read_bytes()) | {"made from": {"net": "another"}})
     with pytest.raises(SystemExit) as exit:
         main(["report", "--out", str(tmp_path / "mixed")])
     assert exit.value.code == 2
@@ -423,7 +423,7 @@ def with_a_planner(folder, to, cells):
     for path in to.glob(f"cells/{cells}"):
         result = json.loads(path.read_bytes())
         result["tests"]["no return"] = {what: ["1" * N] * 5 for what in ("place", "location")}
-        path.write_bytes(to_bytes(result))
+        save_json(path, result)
     return to
 
 

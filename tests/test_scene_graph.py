@@ -10,7 +10,7 @@ import pytest
 from data_gen.rooms import make_home
 from gnl.camera import true_labels
 from gnl.classes import BED, DOOR, SOFA, TABLE, WALL
-from gnl.scene_graph import edges_of, regions, scene_graph, word_of, words_in_words
+from gnl.scene_graph import edges_of, regions, scene_graph, unpack_words, word_of
 
 SMALL, MEDIUM, LARGE = range(3)
 
@@ -25,7 +25,7 @@ def image(*things, size=(512, 512)):
 
 def without_wall(labels):
     """The words of the image as triples (class, size, location), those of the wall left out."""
-    return [word for word in words_in_words(scene_graph(labels).words) if word[0] != WALL]
+    return [word for word in unpack_words(scene_graph(labels).words) if word[0] != WALL]
 
 
 def blobs(rng, height, width, n_classes=10):
@@ -166,12 +166,12 @@ def test_a_centre_on_a_grid_line_belongs_to_the_cell_behind_it(width):
 def test_the_nine_locations_are_read_like_a_page():
     nine = [(170 * column + 40, 170 * row + 40, 170 * column + 120, 170 * row + 120)
             for row in range(3) for column in range(3)]
-    words = words_in_words(word_of(np.full(9, TABLE), np.array(nine, float)))
+    words = unpack_words(word_of(np.full(9, TABLE), np.array(nine, float)))
     assert words == [(TABLE, SMALL, location) for location in range(9)]
 
 
 def test_the_270_words_are_class_size_and_location():
-    assert words_in_words(np.arange(270)) == [(c, s, l) for c in range(10) for s in range(3) for l in range(9)]
+    assert unpack_words(np.arange(270)) == [(c, s, l) for c in range(10) for s in range(3) for l in range(9)]
 
 
 @pytest.mark.parametrize(("across", "down", "near"), [
@@ -219,7 +219,7 @@ def test_a_view_without_a_region_is_a_graph_without_nodes():
 
 def test_a_view_of_one_class_is_a_graph_of_one_node():
     graph = scene_graph(IMAGES["one class"])
-    assert words_in_words(graph.words) == [(7, LARGE, 4)]
+    assert unpack_words(graph.words) == [(7, LARGE, 4)]
     assert graph.boxes.tolist() == [[0, 0, 512, 512]]
     assert graph.edges.shape == (0, 2)
 
@@ -249,20 +249,20 @@ def test_a_batch_is_its_views_one_by_one():
         graphs[len(views)]
 
 
-@pytest.mark.parametrize("chosen", [[3], [8, 2, 2, 0, 5], [2], range(9), (0, 0, 0), [], np.array([])], ids=str)
+@pytest.mark.parametrize("chosen", [[3], [8, 2, 2, 0, 5], [2], range(9), [0, 0, 0], []], ids=str)
 def test_picked_graphs_are_those_of_the_picked_views(chosen):
     views = batch_of_views()
-    assert equal(scene_graph(views).pick(chosen), scene_graph(views[np.array(chosen, int)]))
+    assert equal(scene_graph(views)[chosen], scene_graph(views[np.array(chosen, int)]))
 
 
 def test_graphs_are_chosen_by_masks_and_slices_as_arrays_are():
     views = batch_of_views()
     graphs, mask = scene_graph(views), np.arange(len(views)) % 2 == 0
-    assert equal(graphs.pick(mask), scene_graph(views[mask]))
-    assert equal(graphs.pick([-1, 0]), scene_graph(views[[-1, 0]]))
+    assert equal(graphs[mask], scene_graph(views[mask]))
+    assert equal(graphs[[-1, 0]], scene_graph(views[[-1, 0]]))
     assert equal(graphs[2:5], scene_graph(views[2:5]))
     with pytest.raises(IndexError):
-        graphs.pick(mask[:-1])
+        graphs[mask[:-1]]
 
 
 def test_labels_do_not_depend_on_their_type_or_layout():

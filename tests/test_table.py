@@ -18,7 +18,7 @@ from conftest import begun_by_make, full_disk
 
 from gnl import files, learned, segnet, table
 from gnl.__main__ import main
-from gnl.experiment import Cell, load_cell, to_bytes
+from gnl.experiment import Cell, load_cell
 
 TINIEST = table.Settings(episodes=10, tests=12, validation=2, net_homes=1, net_views=120, net_epochs=4, gcn_views=1200,
                           gcn_epochs=12, gcn_rate=0.01)
@@ -177,16 +177,16 @@ def test_a_damaged_cell_is_named_set_aside_and_done_again(reference, done, capsy
     ("cells", {"settings": {"tests": 13}}), ("costs", {"of stages": {}}), ("costs", {"seconds": "many"}),
     ("costs", {"versions": 3}), ("costs", {"views": 0})])
 def test_no_damaged_file_is_taken_for_a_finished_cell_and_both_are_kept(done, capsys, kind, change):
-    files = [done / folder / f"{NAMES[0]}.json" for folder in ("cells", "costs")]
+    both = [done / folder / f"{NAMES[0]}.json" for folder in ("cells", "costs")]
     assert table.finished(done, NAMES[0], load_cell)
     damaged = done / kind / f"{NAMES[0]}.json"
-    there = to_bytes(json.loads(damaged.read_bytes()) | change)
-    damaged.write_bytes(there)
+    files.save_json(damaged, json.loads(damaged.read_bytes()) | change)
+    there = damaged.read_bytes()
     assert not table.finished(done, NAMES[0], load_cell)
     what = {"cells": "outcomes", "costs": "costs"}[kind]
     assert capsys.readouterr().err.startswith(f"{damaged}: expected the {what} of a cell, found ")
     assert damaged.with_suffix(".damaged").read_bytes() == there
-    assert all(file.with_suffix(".damaged").exists() and not file.exists() for file in files)
+    assert all(file.with_suffix(".damaged").exists() and not file.exists() for file in both)
 
 
 @pytest.mark.parametrize("change", [
@@ -197,7 +197,7 @@ def test_no_outcome_that_the_report_could_not_read_is_taken_for_one(done, capsys
     path = done / "cells" / f"{NAMES[0]}.json"
     result = json.loads(path.read_bytes())
     change(result["tests"]["MV"])
-    path.write_bytes(to_bytes(result))
+    files.save_json(path, result)
     assert not table.finished(done, NAMES[0], load_cell)
     assert capsys.readouterr().err.startswith(f"{path}: expected the outcomes of a cell, found ")
 
@@ -224,7 +224,7 @@ def test_a_home_of_another_name_is_refused(prepared, capsys):
 def test_a_finished_cell_of_another_net_is_refused_before_others_are_begun(done, capsys):
     other, lacking = (done / "cells" / f"{name}.json" for name in ("800-1m-90deg-seed0", "800-1m-90deg-seed1"))
     found = json.loads(other.read_bytes())
-    other.write_bytes(to_bytes(found | {"made from": found["made from"] | {"net": "12345678"}}))
+    files.save_json(other, found | {"made from": found["made from"] | {"net": "12345678"}})
     with pytest.raises(SystemExit) as exit:
         main(["table", *OPTIONS, "--out", str(done), "--jobs", "1", "--repeats", "2"])
     assert exit.value.code == 2
@@ -404,7 +404,7 @@ def test_a_folder_without_a_name_is_refused(capsys):
 
 def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys, monkeypatch):
     """One cell was finished before; of the other no byte can be written."""
-    write, (first, _) = table.write_whole, reference.cells
+    write, (first, _) = files.write_whole, reference.cells
     for folder in ("cells", "costs"):
         (prepared / folder).mkdir()
         shutil.copy(reference.folder / folder / first, prepared / folder)
@@ -415,13 +415,13 @@ def test_a_full_disk_is_one_line_and_nothing_is_lost(reference, prepared, capsys
                 disk.setattr(files.os, "fdopen", full_disk)
             write(path, data)
 
-    monkeypatch.setattr(table, "write_whole", full)
+    monkeypatch.setattr(files, "write_whole", full)
     assert main_here(prepared, "--jobs", 1) == 2
     err = capsys.readouterr().err
     assert f"No space left on device: '{prepared / 'cells' / NAMES[1]}.json'" in err
     assert err.count("\n") == 1
     assert cells(prepared) == {first: reference.cells[first]}
-    monkeypatch.setattr(table, "write_whole", write)
+    monkeypatch.setattr(files, "write_whole", write)
     assert main_here(prepared, "--jobs", 1) == 0
     assert cells(prepared) == reference.cells
 

@@ -86,7 +86,7 @@ def test_what_was_lived_with_another_reward_is_the_same_but_for_the_reward(progr
     ours_plus, rng = program("ours_plus"), np.random.default_rng(0)
     plain, other = ours_plus.options.Experience(), ours_plus.By(lambda look: look["belief"])
     for step in range(3):
-        look = {"seen": rng.random((4, 5)), "actions": rng.integers(3, size=4), "states": rng.random((4, 5)),
+        look = {"before": rng.random((4, 5)), "actions": rng.integers(3, size=4), "states": rng.random((4, 5)),
                 "places": rng.integers(5, size=4), "belief": rng.random(4)}
         plain.watch(step, **look)
         other.watch(step, **look)

@@ -204,7 +204,7 @@ def test_starts_of_other_code_are_drawn_anew(tmp_path, monkeypatch):
 
     first, again = written(), written()
     assert first == again
-    monkeypatch.setattr(starts_module, "code", lambda *_, **__: "other")
+    monkeypatch.setattr(starts_module, "digest_of_code", lambda *_, **__: "other")
     assert written()[0] > first[0]
     assert written()[1] == first[1]
 

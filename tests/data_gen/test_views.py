@@ -220,16 +220,16 @@ def test_what_is_no_command_has_status_2(capsys, tmp_path, line):
 def test_views_of_other_code_are_made_anew(tokens, tmp_path, monkeypatch):
     path, options = tmp_path / "views.npz", ["--homes", 2, "--views", 6]
     assert run("views", path, *options) == 0
-    monkeypatch.setattr(views, "code", lambda *_: "other")
+    monkeypatch.setattr(views, "digest_of_code", lambda *_: "other")
     assert run("views", path, *options) == 0
     assert tokens == [0, 1, 0, 1]
 
 
 @pytest.mark.parametrize("n_arguments", [0, 2], ids=["gnl", "data_gen"])
 def test_views_of_other_code_of_one_package_alone_are_made_anew(tokens, tmp_path, monkeypatch, n_arguments):
-    path, options, code = tmp_path / "views.npz", ["--homes", 2, "--views", 6], views.code
+    path, options, code = tmp_path / "views.npz", ["--homes", 2, "--views", 6], views.digest_of_code
     assert run("views", path, *options) == 0
-    monkeypatch.setattr(views, "code", lambda *where: "other" if len(where) == n_arguments else code(*where))
+    monkeypatch.setattr(views, "digest_of_code", lambda *where: "other" if len(where) == n_arguments else code(*where))
     assert run("views", path, *options) == 0
     assert tokens == [0, 1, 0, 1]
 
