@@ -44,7 +44,7 @@ def main(cells=SIX, **where):
     """Measure the cells, and print."""
     lines = in_cells(measure, cells, **where)
     starts = "training starts", "anywhere", "tests"
-    print(f"{'ahead of MV, from':<17}", *(f"{words:<21}" for words in starts), f"{'undone':<11}", "alike", sep="  ")
+    print(f"{'ahead of MV, from':<17}", *(f"{words:<20}" for words in starts), f"{'undone':<11}", "alike", sep="  ")
     for cell, line in zip(cells, lines, strict=True):
         print(f"{cell.name.rpartition('-seed')[0]:<17}{line}")
 
