@@ -73,7 +73,7 @@ def true_labels(world, poses, size=SIZE_PX):
 
 def _check(poses, size):
     """The poses as (B, 3) floats; ValueError if there is no view of that size from them."""
-    if size < 2 or size % 2:
+    if not isinstance(size, int | np.integer) or size < 2 or size % 2:
         raise ValueError(f"size: expected an even number of pixels, found {size}")
     return check_poses(poses).reshape(-1, 3)
 

@@ -33,7 +33,7 @@ class Checkpoints:
 
     def values_at(self, checkpoint):
         """The values of each action as they were at a checkpoint (0, 1, ...)."""
-        if not 0 <= checkpoint < len(self):
+        if not isinstance(checkpoint, int | np.integer) or not 0 <= checkpoint < len(self):
             there = f"0..{len(self) - 1}" if self.entries else "one to be there"
             raise ValueError(f"checkpoint: expected {there}, found {checkpoint}")
         values = [np.full(n, np.nan) for n, _, _ in self.entries[checkpoint]]

@@ -9,6 +9,8 @@ many cells the cells are what varies, too: the bootstrap draws whole cells (clus
 import numpy as np
 from scipy.special import bdtr
 
+from .checks import check_finite
+
 Z95, Z80 = 1.959964, 0.841621  # 97.5 % and 80 % points of the standard normal
 RESAMPLED = 10_000
 
@@ -18,7 +20,7 @@ def paired_difference(a, b):
     a, b = np.asarray(a, float), np.asarray(b, float)
     if a.shape != b.shape or a.ndim != 1 or len(a) < 2:
         raise ValueError(f"pairs: expected two equal lists of at least 2 outcomes, found {a.shape} and {b.shape}")
-    d = a - b
+    check_finite("pairs", d := a - b)
     half = Z95 * d.std(ddof=1) / np.sqrt(len(d))
     return d.mean(), d.mean() - half, d.mean() + half
 
@@ -31,6 +33,7 @@ def over_cells(differences, rng):
     d = np.asarray(differences, float)
     if d.ndim != 1 or len(d) < 1:
         raise ValueError(f"differences: expected one for each cell, found shape {d.shape}")
+    check_finite("differences", d)
     means = d[rng.integers(len(d), size=(RESAMPLED, len(d)))].mean(1)
     return d.mean(), *np.percentile(means, [2.5, 97.5])
 
@@ -56,9 +59,11 @@ def episodes_needed(difference, std):
 
     std : standard deviation of d over pairs; of two unpaired methods of p and q right sqrt(p (1 - p) + q (1 - q))
     """
-    if not difference:
-        raise ValueError("difference: expected a number other than 0, which no number of pairs would show")
-    return int(np.ceil(((Z95 + Z80) * std / difference) ** 2))
+    ratio = (Z95 + Z80) * std / difference if difference else np.inf
+    if not abs(ratio) < 1e9:  # NaN compares as false
+        raise ValueError("difference, std: expected finite numbers and a difference that some number of pairs would "
+                         f"show, found {difference} and {std}")
+    return int(np.ceil(ratio ** 2))
 
 
 def in_points(mean, low, high):

@@ -140,7 +140,7 @@ def load_cell(path):
     def check_costs(costs):
         numbers = [costs["seconds"], costs["views"], costs["peak MB"], costs["of training"]["seconds"],
                    *costs["of stages"].values()]
-        if not all(0 <= number < float("inf") for number in numbers) or not costs["views"]:  # NaN compares as false
+        if not all(0 <= number < 1e15 for number in numbers) or not costs["views"]:  # NaN compares as false
             raise ValueError("no views, less than nothing, or no number")
         costs["of stages"]["graph"], costs["machine"].split(), costs["versions"].items()
 

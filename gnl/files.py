@@ -84,7 +84,7 @@ def load_arrays(path):
         reason = str(error).partition("\n")[0]
         raise ValueError(f"{path}: expected an .npz file of gnl, found something else ({reason})") from None
     if version != FORMAT:
-        raise ValueError(f"{path}: expected format version {FORMAT}, found {version}")
+        raise ValueError(f"{path}: expected format version {FORMAT}, found {version!r}")
     return arrays, made_by
 
 

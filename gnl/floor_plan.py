@@ -144,8 +144,9 @@ def check(plan, source="floor plan"):
     for name, value in plan.get("colors", {}).items():
         colour(value, f"colors.{name}")
     ends = [end for wall in walls for end in (wall[:2], wall[2:])]
-    corners = [corner for room in plan.get("rooms", []) for corner in room["polygon"]]
-    for key, points in (("walls", ends), ("rooms", ends + corners)):
+    for key in ("walls", "rooms", "objects"):
+        things = [] if key == "walls" else plan.get(key, [])
+        points = ends + [corner for thing in things for corner in thing["polygon"]]
         extent = max(max(line) - min(line) for line in zip(*points, strict=True))
         if extent > LARGEST_HOME_M:
             fail(key, f"a home of at most {LARGEST_HOME_M:g} m", round(extent, 1))

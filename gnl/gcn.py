@@ -12,6 +12,7 @@ group's; ours is after the group's code of 2021, with sums over neighbours norma
 
 import numpy as np
 
+from .checks import check_count
 from .files import check_params, load_arrays, save_arrays
 from .nn import Adam, linear_backward, linear_forward, relu_backward, relu_forward, softmax_cross_entropy
 from .scene_graph import N_WORDS, sparse
@@ -29,7 +30,9 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
     edges (E, 2) int, each pair once -> (N, N), symmetric, largest eigenvalue 1; graphs of a batch are its blocks
     """
     _check_integers(edges)
-    i, j = edges.T
+    i, j = ends = edges.astype(int).T
+    if ends.size and not 0 <= ends.min() <= ends.max() < n_nodes:
+        raise ValueError(f"edges: expected nodes 0..{n_nodes - 1}, found {ends.min()}..{ends.max()}")
     # CHOICE: sums over neighbours are normalised; the group's code of 2021 sums plainly.
     loops = np.arange(n_nodes)
     rows, columns = np.concatenate([i, j, loops]), np.concatenate([j, i, loops])
@@ -83,7 +86,9 @@ def lookup_backward(dout, words, n_words):
 
 
 def _check_words(words, n_words):
-    """ValueError for words that are not among 0 .. n_words - 1."""
+    """ValueError for words that are not whole numbers 0 .. n_words - 1."""
+    if not np.issubdtype(words.dtype, np.integer):
+        raise ValueError(f"words: expected integers, found {words.dtype}")
     if words.min(initial=0) < 0 or words.max(initial=0) >= n_words:
         raise ValueError(f"words: expected 0..{n_words - 1}, found {words.min()}..{words.max()}")
 
@@ -185,9 +190,9 @@ def train(gcn, graphs, places, rng, epochs=EPOCHS, batch=BATCH, rate=RATE, progr
                          f"found {places.dtype} of shape {places.shape}")
     if not 0 <= places.min() <= places.max() < gcn.n_places:
         raise ValueError(f"places: expected 0..{gcn.n_places - 1}, found {places.min()}..{places.max()}")
-    if batch < 1 or epochs < 0 or not 0 <= rate < np.inf:
-        raise ValueError("batch, epochs, rate: expected at least 1, at least 0 and a finite number from 0 on, "
-                         f"found {batch}, {epochs} and {rate}")
+    batch, epochs = check_count("batch", batch, 1), check_count("epochs", epochs, 0)
+    if not 0 <= rate < np.inf:
+        raise ValueError(f"rate: expected a finite number from 0 on, found {rate}")
     adam = Adam(gcn.params, rate)
     for epoch in range(epochs):
         order, losses = rng.permutation(len(places)), []

@@ -63,7 +63,7 @@ def load_starts(out, cell, settings):
     found = {name: poses.shape for name, poses in starts.items()}
     if found != wanted:
         raise ValueError(f"{path}: expected start poses {wanted}, found {found}")
-    if not all(np.isfinite(poses).all() for poses in starts.values()):
+    if not all(poses.dtype == float and np.isfinite(poses).all() for poses in starts.values()):
         raise ValueError(f"{path}: expected start poses of finite numbers, found others")
     return starts
 
@@ -72,7 +72,7 @@ def check_settings(path, there, settings):
     """ValueError with the name of a setting that is another one in a file of results."""
     for name, value in settings.items():
         if there.get(name) != value:
-            raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)}; "
+            raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)!r}; "
                              "name another folder with --out")
 
 

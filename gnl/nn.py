@@ -27,7 +27,7 @@ def conv_forward(x, w, b):
     patches = rows.copy().view(x.dtype).reshape(B, H * W, 9 * C)
     out = patches @ w.reshape(9 * C, -1)  # a product for each image: a small one stays near the processor
     out += b
-    return out.reshape(B, H, W, -1), (patches.reshape(B * H * W, 9 * C), w)
+    return out.reshape(B, H, W, w.shape[3]), (patches.reshape(B * H * W, 9 * C), w)
 
 
 def conv_backward(dout, cache):
@@ -116,10 +116,11 @@ def softmax_cross_entropy(scores, labels, axis=-1):
     moved = np.moveaxis(scores, axis, 0)
     z = moved.reshape(len(moved), -1)
     n = z.shape[1]
-    p = np.exp(z - z.max(0))
-    p /= p.sum(0)
-    right = labels.ravel(), np.arange(n)
-    loss = -np.log(p[right] + np.finfo(p.dtype).tiny).mean()
+    right, top = (labels.ravel(), np.arange(n)), z.max(0)
+    p = np.exp(z - top)
+    total = p.sum(0)
+    loss = (np.log(total) + top - z[right]).mean()  # and not -log p: p may be too small for its digits
+    p /= total
     p[right] -= 1
     p /= n
     return loss, np.moveaxis(p.reshape(moved.shape), 0, axis)

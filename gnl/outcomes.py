@@ -27,7 +27,7 @@ def to_strings(right):
 
 def from_strings(looks):
     """The way back: T strings -> (n, T) bool."""
-    if set("".join(looks)) - {"0", "1"} or len(set(map(len, looks))) != 1:
+    if set("".join(looks)) - {"0", "1"} or len(set(map(len, looks))) != 1 or not looks[0]:
         raise ValueError("looks that are no strings of 0 and 1, all equally long")
     characters = np.array([np.frombuffer(look.encode(), np.uint8) for look in looks]).T
     return characters == ord("1")

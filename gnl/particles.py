@@ -11,6 +11,7 @@
 
 import numpy as np
 
+from .checks import check_count
 from .ranks import best_first
 
 N_PARTICLES = 5000
@@ -38,10 +39,8 @@ class ParticleFilter:
             raise ValueError(f"likelihood: expected shape (B, K), found {likelihood.shape}")
         if np.shape(std) != (2,) or not (np.isfinite(std).all() and min(std) >= 0):
             raise ValueError(f"std: expected two finite numbers from 0 on, found {std}")
-        if min(n_particles, n_start_places) < 1:
-            raise ValueError("n_particles, n_start_places: expected at least 1 of each, "
-                             f"found {n_particles} and {n_start_places}")
-        B, M, k = len(likelihood), n_particles, min(n_start_places, likelihood.shape[1])
+        B, M = len(likelihood), check_count("n_particles", n_particles, 1)
+        k = min(check_count("n_start_places", n_start_places, 1), likelihood.shape[1])
         self.grid, self.rng, self.std = grid, rng, std
         best = best_first(likelihood)[:, :k]
         # Particles of one place lie in one block: were places to alternate (0, 1, 2, 0, 1, 2, ..), systematic

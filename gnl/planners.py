@@ -30,6 +30,8 @@ def scan(sequence):
     def plan(step, states, _rng):
         if step >= sequence.shape[-1]:
             raise ValueError(f"scan: expected an action for every step, found {sequence.shape[-1]} at step {step + 1}")
+        if sequence.ndim > 1 and len(sequence) != len(states):
+            raise ValueError(f"scan: expected a sequence for each of {len(states)} robots, found {len(sequence)}")
         return np.broadcast_to(sequence[..., step], len(states))
     return plan
 

@@ -28,7 +28,7 @@ def footprints(rectangles):
 
 
 def smallest_rectangle(points):
-    """Rectangle of least area around `points` (n, 2); one of its sides runs along one of theirs."""
+    """Rectangle of least area around `points` (n, 2), of those with a side along one of theirs."""
     sides = np.roll(points, -1, 0) - points
     sides = sides[np.hypot(*sides.T) > 1e-9]
     angles = np.unique(np.round(np.arctan2(sides[:, 1], sides[:, 0]) % (np.pi / 2), 9)) if len(sides) else [0.0]

@@ -18,6 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .checks import check_count
 from .classes import N_CLASSES
 from .files import check_params, load_arrays, save_arrays
 from .nn import (
@@ -193,12 +194,12 @@ def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     The rate rises over the first 20th of the steps and falls along a cosine to 0: the last step changes nothing.
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
-    if not len(rgb) or labels.shape != rgb.shape[:3] or labels.min() < 0 or labels.max() >= N_CLASSES:
-        raise ValueError(f"labels: expected those of at least one view, each pixel 0..{N_CLASSES - 1}, found "
-                         f"{labels.shape} up to {labels.max(initial=0)} for views {rgb.shape}")
-    if batch < 1 or epochs < 0:
-        raise ValueError(f"batch, epochs: expected at least 1 and at least 0, found {batch} and {epochs}")
-    batch = min(batch, len(rgb))
+    if not len(rgb) or labels.shape != rgb.shape[:3] or not np.issubdtype(labels.dtype, np.integer):
+        raise ValueError("labels: expected integers for each pixel of at least one view, found "
+                         f"{labels.dtype} {labels.shape} for views {rgb.shape}")
+    if not 0 <= labels.min() <= labels.max() < N_CLASSES:
+        raise ValueError(f"labels: expected 0..{N_CLASSES - 1}, found {labels.min()}..{labels.max()}")
+    batch, epochs = min(check_count("batch", batch, 1), len(rgb)), check_count("epochs", epochs, 0)
     adam, n_batches = Adam(params), len(rgb) // batch  # of an epoch; what is left over waits for another one
     for epoch in range(epochs):
         batches = rng.permutation(len(rgb))[:n_batches * batch].reshape(n_batches, batch)

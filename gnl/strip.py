@@ -19,6 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .places import check_poses
+
 FIELD_OF_VIEW_RAD = np.pi / 2  # CHOICE: 90 degrees, Habitat's default
 TOP, UNDERSIDE, FACES = 4, 5, 6  # faces of a box; 0..3 are its sides, counter-clockwise from the end of its first axis
 NEAREST_M = 0.05  # nearer things are cut off: the camera sits inside the robot
@@ -53,7 +55,7 @@ class Strip:
         stretch = np.hypot(1, slopes(self.n_columns))[ray % self.n_columns]
         with np.errstate(divide="ignore"):
             near[ray, d], far[ray, d], boxes[ray, d] = stretch / w_in, stretch / w_out, box
-        return tuple(a.reshape(self.n_views, self.n_columns, -1) for a in (near, far, boxes))
+        return tuple(a.reshape(self.n_views, self.n_columns, shape[1]) for a in (near, far, boxes))
 
 
 def rim_slope():
@@ -70,6 +72,7 @@ def slopes(n_columns):
 
 def cast(world, poses, n_columns=512):
     """Semantic strip of each pose: poses (B, 3) -> Strip. Nothing behind the nearest full-height wall is kept."""
+    poses = check_poses(poses).reshape(-1, 3)
     B, C = len(poses), n_columns
     view, box, axes, near, far, away = _boxes_in_view(world, poses)
     V, outside = len(box), near > 0
@@ -118,7 +121,7 @@ def _boxes_in_view(world, poses):
     returns : view, box (V,);  (2, 2, V): how far n_k points ahead and to the left;  (2, V) each: near_k, far_k [m];
               whether n_k is the box's own axis and not its opposite
     """
-    x, y, theta = (np.asarray(poses, float)[:, i, None] for i in range(3))
+    x, y, theta = (poses[:, i, None] for i in range(3))
     dx, dy = world.centre[:, 0] - x, world.centre[:, 1] - y
     ahead, left = np.cos(theta) * dx + np.sin(theta) * dy, np.cos(theta) * dy - np.sin(theta) * dx
     # A circle around the box reaches into the view.

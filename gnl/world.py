@@ -16,7 +16,7 @@ import zlib
 import numpy as np
 
 from . import floor_plan
-from .checks import check_finite
+from .checks import check_count, check_finite
 from .classes import CEILING, DOOR, FLOOR, WALL, class_of
 from .free_space import FreeSpace, box_distance
 from .polygons import cover_polygon, footprints
@@ -113,13 +113,13 @@ class World:
 
     def free_poses(self, n, rng, radius_m=ROBOT_RADIUS_M):
         """n poses uniform over the largest region of free space, bearings uniform: (n, 3)."""
-        poses, drawn = np.empty((0, 3)), 0
+        n, poses, drawn = check_count("n", n, 0), np.empty((0, 3)), 0
         while len(poses) < n:
             draw = rng.uniform((*self.bounds[:2], -np.pi), (*self.bounds[2:], np.pi), (4 * n + 1000, 3))
             poses = np.vstack([poses, draw[self.is_reachable(draw[:, :2], radius_m)]])
             drawn += len(draw)
             if len(poses) < LEAST_FREE * drawn:
-                raise ValueError(f"{self.name}: expected free space for a disc of {radius_m:g} m, "
+                raise ValueError(f"{self.name!r}: expected free space for a disc of {radius_m:g} m, "
                                  f"found {len(poses)} free among {drawn} points")
         return poses[:n]
 

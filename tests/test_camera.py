@@ -219,6 +219,7 @@ def test_no_view_at_all_is_no_error(home):
 @pytest.mark.parametrize(("poses", "size", "noise", "words"), [
     ([[1, 2, np.nan]], 64, 1, "poses: expected finite numbers, found nan"), ([[1, 2]], 64, 1, "poses: expected shape"),
     ([[1, 2, 0]], 0, 1, "size: expected an even number of pixels, found 0"), ([[1, 2, 0]], 63, 1, "size: .* found 63"),
+    ([[1, 2, 0]], 64.0, 1, "size: expected an even number of pixels, found 64.0"),
     ([[1, 2, 0]], 64, -1, "noise: expected 0..10, found -1")])
 def test_views_that_cannot_be_are_refused(two_rooms, poses, size, noise, words):
     with pytest.raises(ValueError, match=words):

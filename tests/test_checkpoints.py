@@ -69,7 +69,7 @@ def test_the_past_does_not_change_as_the_present_learns():
     assert not hasattr(past, "checkpoint")
 
 
-@pytest.mark.parametrize("checkpoint", [-1, 2])
+@pytest.mark.parametrize("checkpoint", [-1, 2, 1.0])
 def test_a_checkpoint_that_is_none_is_refused(checkpoint):
     store = lived(1)
     store.checkpoint()

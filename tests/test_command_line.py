@@ -84,6 +84,18 @@ def test_an_image_that_blurs_indices_is_refused(tmp_path, capsys):
                                        "such as PNG, found JPEG\n")
 
 
+def test_an_image_that_is_damaged_where_pillow_does_not_look_is_refused(tmp_path, capsys):
+    path = tmp_path / "view.tif"
+    Image.new("L", (20, 20)).save(path)
+    damaged = bytearray(path.read_bytes())
+    tags = int.from_bytes(damaged[4:8], "little")  # where their number stands, then they themselves, 12 bytes each
+    n_tags = int.from_bytes(damaged[tags:tags + 2], "little")
+    damaged[tags + 2 + 12 * n_tags + 1] = 0xb5  # another image should follow there
+    path.write_bytes(damaged)
+    assert run("graph", path) == 2
+    assert capsys.readouterr().err.startswith(f"python -m gnl: {path}: expected an image, found something else (")
+
+
 def test_the_graph_of_a_label_image_is_printed_and_drawn(tmp_path, capsys):
     path, picture = write(tmp_path / "view.png"), tmp_path / "view-graph.png"
     assert run("graph", path) == 0

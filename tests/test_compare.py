@@ -128,9 +128,17 @@ def test_no_fewer_episodes_would_do():
         assert difference * np.sqrt(n - 1) / std < needed <= difference * np.sqrt(n) / std + 1e-5
 
 
-def test_no_number_of_episodes_shows_a_difference_of_nothing():
-    with pytest.raises(ValueError, match="difference: expected a number other than 0"):
-        episodes_needed(0, 0.5)
+@pytest.mark.parametrize(("difference", "std"), [(0, 0.5), (np.nan, 0.5), (0.1, np.inf), (1e-200, 0.5)])
+def test_no_number_of_episodes_shows_a_difference_of_nothing(difference, std):
+    with pytest.raises(ValueError, match="difference, std: expected finite numbers and a difference that some "):
+        episodes_needed(difference, std)
+
+
+def test_outcomes_that_are_no_numbers_are_refused():
+    with pytest.raises(ValueError, match="pairs: expected finite numbers, found nan"):
+        paired_difference([1, np.nan], [0, 1])
+    with pytest.raises(ValueError, match="differences: expected finite numbers, found nan"):
+        over_cells([0.1, np.nan], np.random.default_rng(0))
 
 
 def test_the_papers_own_numbers_have_the_means_that_were_seen_in_them():

@@ -149,11 +149,18 @@ def test_no_file_and_a_folder_are_refused_by_name(tmp_path):
 
 
 def test_a_home_too_far_from_the_origin_for_particles_of_32_bits_is_refused():
-    far = {**GOOD, "rooms": [], "walls": [[9_990, 0, 9_995, 0], [9_995, 0, 10_000, 5]]}
+    far = {**GOOD, "rooms": [], "objects": [], "walls": [[9_990, 0, 9_995, 0], [9_995, 0, 10_000, 5]]}
     assert floor_plan.check(far) == far
     words = r"walls: expected a home within 10000 m of the origin \(move it there\), found 10000\.5"
     with pytest.raises(ValueError, match=words):
         floor_plan.check({**far, "walls": [*far["walls"], [9_990, 0, 10_000.5, 0]]})
+
+
+def test_an_object_farther_from_its_home_than_a_home_is_large_is_refused():
+    """As one in millimetres is: what covers concave polygons knows metres."""
+    corners = [[326.1, 970.2], [4268.1, 3218.7], [3978.4, 3666.5], [4883.1, 3213.7]]
+    with pytest.raises(ValueError, match=r"objects: expected a home of at most 200 m, found 4883\.1"):
+        floor_plan.check({**GOOD, "objects": [{"class": "bed", "height": 0.5, "polygon": corners}]})
 
 
 def test_a_key_that_stands_twice_is_refused(tmp_path):

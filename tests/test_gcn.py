@@ -1,5 +1,7 @@
 """The GCN is its dense algebra, has the right gradient, does not see the order of nodes, and learns."""
 
+from dataclasses import replace
+
 import naive_learning
 import numpy as np
 import pytest
@@ -206,10 +208,29 @@ def test_a_file_that_is_no_network_is_refused(tmp_path, change):
         gcn.GCN.load(tmp_path / "gcn.npz")
 
 
-@pytest.mark.parametrize("how", [{"batch": 0}, {"batch": -1}, {"epochs": -1}, {"rate": np.nan}], ids=str)
-def test_a_training_that_cannot_be_is_refused(how):
-    with pytest.raises(ValueError, match="batch, epochs, rate: expected at least 1, at least 0 and a finite number "):
+@pytest.mark.parametrize(("how", "complaint"), [
+    ({"batch": 0}, "batch: expected a whole number from 1 on, found 0"), ({"batch": 2.0}, "batch: .* found 2.0"),
+    ({"epochs": -1}, "epochs: expected a whole number from 0 on, found -1"), ({"epochs": 1.0}, "epochs: .* found 1.0"),
+    ({"rate": np.nan}, "rate: expected a finite number from 0 on, found nan")], ids=str)
+def test_a_training_that_cannot_be_is_refused(how, complaint):
+    with pytest.raises(ValueError, match=complaint):
         gcn.train(net(), graphs_of(random_parts(0)), np.zeros(len(SIZES), int), np.random.default_rng(0), **how)
+
+
+@pytest.mark.parametrize(("words", "edges", "complaint"), [
+    ([1, 2, 3], [[0, 5]], "edges: expected nodes 0..2, found 0..5"),
+    ([1, 2, 3], [[-1, 0]], "edges: expected nodes 0..2, found -1..0"),
+    ([1.0, 2.0, 3.0], [[0, 1]], "words: expected integers, found float64")], ids=str)
+def test_graphs_made_by_hand_of_nodes_or_words_that_are_none_have_no_scores(words, edges, complaint):
+    graphs = SceneGraphs(np.array(words), np.zeros((3, 4)), np.array(edges), np.array([0, 3]), np.array([0, 1]))
+    with pytest.raises(ValueError, match=complaint):
+        net().scores(graphs)
+
+
+def test_edges_may_be_of_any_kind_of_integer():
+    graphs = graphs_of(random_parts(0))
+    small = replace(graphs, edges=graphs.edges.astype(np.uint64))
+    np.testing.assert_array_equal(net().scores(small), net().scores(graphs))
 
 
 @pytest.mark.parametrize("places", [[0, 1, 2], [], [0] * 5 + [K], [0] * 5 + [-1], [0.5] * 6, [True] * 6], ids=str)

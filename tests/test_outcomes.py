@@ -44,7 +44,7 @@ def test_strings_and_arrays_are_each_others_inverse():
     np.testing.assert_array_equal(from_strings(to_strings(there)), there)
 
 
-@pytest.mark.parametrize("looks", [["01", "0"], ["0x"], ["01", "1 "]], ids=str)
+@pytest.mark.parametrize("looks", [["01", "0"], ["0x"], ["01", "1 "], [""]], ids=str)
 def test_looks_that_are_no_strings_of_right_and_wrong_are_refused(looks):
     with pytest.raises(ValueError, match="looks that are no strings of 0 and 1, all equally long"):
         from_strings(looks)

@@ -215,9 +215,11 @@ def test_likelihoods_of_any_kind_of_numbers_start_the_filter_alike(kind):
         np.testing.assert_array_equal(value, getattr(other, name))
 
 
-@pytest.mark.parametrize("size", [{"n_particles": 0}, {"n_start_places": 0}, {"n_start_places": -1}], ids=str)
+@pytest.mark.parametrize("size", [{"n_particles": 0}, {"n_start_places": 0}, {"n_start_places": -1},
+                                  {"n_particles": 1e3}], ids=str)
 def test_a_filter_of_nothing_is_refused(size):
-    with pytest.raises(ValueError, match="n_particles, n_start_places: expected at least 1 of each, found "):
+    (name, found), = size.items()
+    with pytest.raises(ValueError, match=f"{name}: expected a whole number from 1 on, found {found}"):
         ParticleFilter(GRID, np.ones((1, K)), np.random.default_rng(0), **size)
     with pytest.raises(ValueError, match=r"likelihood: expected shape \(B, K\), found \(7,\)"):
         ParticleFilter(GRID, np.ones(7), np.random.default_rng(0))

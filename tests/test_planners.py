@@ -67,6 +67,8 @@ def test_each_robot_may_have_a_scan_of_its_own():
     plan = planners.scan(np.array([[LEFT, RIGHT], [FORWARD, LEFT]]))
     assert plan(0, STATES[:2], rng()).tolist() == [LEFT, FORWARD]
     assert plan(1, STATES[:2], rng()).tolist() == [RIGHT, LEFT]
+    with pytest.raises(ValueError, match="scan: expected a sequence for each of 3 robots, found 2"):
+        plan(0, STATES[:3], rng())
 
 
 @pytest.mark.parametrize(("q", "wanted"), [

@@ -249,3 +249,11 @@ def test_a_view_of_half_a_circle_or_more_is_refused(monkeypatch, angle):
     monkeypatch.setattr(strip, "FIELD_OF_VIEW_RAD", angle)
     with pytest.raises(ValueError, match=f"field of view: expected more than 0 and less than pi, found {angle}"):
         slopes(8)
+
+
+def test_no_views_have_a_strip_too_and_a_pose_that_is_none_has_no_strip(home):
+    assert [part.shape for part in cast(home, np.empty((0, 3)), 64).dense()] == [(0, 64, 1)] * 3
+    with pytest.raises(ValueError, match="poses: expected finite numbers, found nan"):
+        cast(home, [[1, 2, np.nan]])
+    with pytest.raises(ValueError, match=r"poses: expected shape"):
+        cast(home, [[1, 2]])

@@ -268,7 +268,7 @@ def test_free_poses_come_from_the_generator_alone(two_rooms):
 
 def test_a_home_without_free_space_is_refused():
     full = World(room(thing("bed", 3, 2, 5.9, 3.9, 0.5), name="full"))
-    with pytest.raises(ValueError, match=r"full: expected free space for a disc of 0.2 m, found 0 free among"):
+    with pytest.raises(ValueError, match=r"'full': expected free space for a disc of 0.2 m, found 0 free among"):
         full.free_poses(1, np.random.default_rng(0))
 
 
