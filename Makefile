@@ -1,6 +1,6 @@
 # Every command of the project. `make demo` and `make test` need python >= 3.10 and make, nothing else.
 
-# One BLAS thread a process: two threads on two busy cores make a net 25 times slower.
+# One BLAS thread per process: two threads on two busy cores make a net 25 times slower.
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
@@ -73,7 +73,7 @@ bench: .venv/ready
 clean:
 	rm -rf .venv out build *.egg-info
 
-# Made anew only when setup.cfg changed.
+# Made anew only if setup.cfg has changed.
 .venv/ready: setup.cfg
 	@$(PYTHON) -c 'import sys; v = sys.version_info; v >= (3, 10) or \
 	    sys.exit(f"gnl: expected python >= 3.10, found {v[0]}.{v[1]}; name another with make PYTHON=...")'

@@ -34,7 +34,7 @@ def seen(box, x, y):
 
 
 def turned(box, quarters):
-    """The same box, looking so many quarter turns further left: turned(room, k) has its wall k behind it."""
+    """The same box, turned left by so many quarter turns: turned(room, k) has its wall k behind it."""
     w, d = (box.depth, box.width) if quarters % 2 else (box.width, box.depth)
     return box._replace(angle=box.angle + quarters * math.pi / 2, width=w, depth=d)
 
@@ -46,7 +46,7 @@ def outline(box):
 
 
 def extent(box, angle):
-    """Half of what a box measures along the x and y axes of somebody turned by `angle`."""
+    """Half of what a box measures along x and y axes that are turned by `angle`."""
     c, s = abs(math.cos(box.angle - angle)), abs(math.sin(box.angle - angle))
     return (c * box.width + s * box.depth) / 2, (s * box.width + c * box.depth) / 2
 
@@ -59,7 +59,7 @@ def inside(room, box, margin):
 
 
 def overlap(a, b):
-    """Whether two boxes share space: not if an axis of either keeps them apart. Touching is allowed."""
+    """Whether two boxes share space: not if an axis of either separates them. Touching is allowed."""
     if a.z0 >= b.z0 + b.height or b.z0 >= a.z0 + a.height:
         return False
     for box, other in ((a, b), (b, a)):

@@ -1,6 +1,6 @@
 """Puts furniture into one room of a procedural home and leaves a robot the room to get everywhere in it.
 
-A piece gets a few tries; it stays if it overlaps nothing and keeps the free floor in one part, else the room
+A piece gets a few tries; it stays if it overlaps nothing and leaves the free floor connected, else the room
 does without. Every position is drawn as seen from the room's door, so that two rooms furnished with one key
 look alike to whoever enters them, however they are turned.
 
@@ -28,13 +28,13 @@ ALONE = (*AT_WALL, "middle", "free")  # must keep off the fronts of others; a de
 
 
 def furnish(room, kind, keep_clear, leaves, key):
-    """Objects of a room as floor-plan dicts, or None if the piece that makes it such a room finds no place.
+    """Objects of a room as floor-plan dicts, or None if the first piece, which defines its type, finds no place.
 
     room       : Box
     kind       : str, one of ROOMS
     keep_clear : [Box], the floor before and behind its doors and openings
     leaves     : [Box], its open doors
-    key        : int; one key, one furniture
+    key        : int; the same key, the same furniture
     """
     x, y, clearance = empty_floor(room)
     clearance = np.min([clearance, *(distance(leaf, x, y) for leaf in leaves)], axis=0)
@@ -79,14 +79,14 @@ def draw_piece(name, rng):
 
 
 def tries(rules, latest):
-    """TRIES pairs (rule, Box it speaks of), the best rule first; none if all speak of what is not there."""
+    """TRIES pairs (rule, Box it refers to), the best rule first; none if all refer to what is not there."""
     rules = [rule.partition(" ") for rule in rules.split(" or ")]
     pairs = [(rule, latest.get(other)) for rule, _, other in rules if not other or other in latest]
     return [pairs[i * len(pairs) // TRIES] for i in range(TRIES) if pairs]
 
 
 def put(piece, rule, other, room, rng):
-    """The piece at a place drawn by a rule of ROOMS; `other` is the Box that the rule speaks of."""
+    """The piece at a place drawn by a rule of ROOMS; `other` is the Box that the rule refers to."""
     w, d = piece.width, piece.depth
     slide, slip = rng.uniform(-0.5, 0.5, 2)
     quarters, side, gap = int(rng.integers(4)), int(rng.choice((-1, 1))), rng.uniform(0.03, 0.4)
@@ -135,7 +135,7 @@ def empty_floor(room):
 
 
 def in_one_part(clearance):
-    """Whether the robot gets from any free cell to any other; half a cell is kept for the way between two centres."""
+    """Whether the robot gets from any free cell to any other; half a cell is margin for the way between two centres."""
     return label(clearance > ROBOT_RADIUS_M + CELL_M / 2)[1] == 1
 
 

@@ -42,7 +42,7 @@ PIECES = {  # name: class, then least and most width, depth (away from the wall)
     "carpet": ("other", (1.2, 2.4), (0.9, 1.7), (0.01, 0.01), (0.0, 0.0)),
 }
 
-ROOMS = {  # type: its pieces in this order: name, rule, how often. Without its first piece a room is no such room
+ROOMS = {  # type: its pieces in order: name, rule, probability. A room needs the first one to be of the type
     "bedroom": (
         ("bed", "wall", 1.0), ("nightstand", "beside bed", 0.9), ("nightstand", "beside bed", 0.6),
         ("wardrobe", "wall", 1.0), ("carpet", "before bed or free", 0.5), ("desk", "wall", 0.5),

@@ -5,8 +5,8 @@ the flats it ends at a living room that, with the kitchen, takes the whole far e
 and kitchen open into each other without doors.
 
     W, D        m        width (x) and depth (y) of the footprint, before the flat is mirrored and turned
-    wish        tuple    type of a room and its wished area [m2]; the footprint decides how near it comes
-    rooms       list     (type, rectangle), first what lies before the front door, then the corridor
+    wish        tuple    type of a room and the area wished for [m2]; the footprint decides how near it comes
+    rooms       list     (type, rectangle), first what lies outside the front door, then the corridor
     rectangle   (4,) m   x0, y0, x1, y1 of a room, on the centre lines of its walls
     segment     (4,) m   x0, y0, x1, y1 of a wall or of a gap in it
 """
@@ -20,7 +20,7 @@ import numpy as np
 AREA_M2, SIDE_M, CORRIDOR_M, DOOR_M = (82, 128), (8.5, 13.0), (1.25, 1.7), 0.9
 WISH_M2 = {"living room": (18, 26), "kitchen": (9, 14), "dining room": (10, 15), "bedroom": (11, 17),
            "study": (9, 13), "bathroom": (4.5, 8)}
-EXTRAS = ("bedroom", "study", "bathroom", "dining room")  # beside what every home has
+EXTRAS = ("bedroom", "study", "bathroom", "dining room")  # besides what every home has
 DAY = ("living room", "dining room", "kitchen")
 
 
@@ -79,12 +79,12 @@ def good_shape(kind, width, depth):
 
 
 def total(part):
-    """Wished area of some rooms."""
+    """Area wished for, of some rooms together."""
     return sum(area for _, area in part)
 
 
 def in_row(part, x0, x1, y0, y1):
-    """Rooms side by side along x, each as wide as its wished area asks."""
+    """Rooms side by side along x, their widths in proportion to the areas wished for."""
     cuts = np.cumsum([0.0, *(area for _, area in part)]) / max(total(part), 1) * (x1 - x0) + x0
     return [(kind, (a, y0, b, y1)) for (kind, _), a, b in zip(part, cuts[:-1], cuts[1:], strict=True)]
 
@@ -120,7 +120,7 @@ def draw_walls(rooms):
 
 
 def draw_gaps(rooms, rng):
-    """Doors from the corridor into the rooms beside it, openings between the rooms of the day."""
+    """The front door, doors from the corridor into the rooms beside it, openings between the day rooms (DAY)."""
     gaps = []
     for (i, (kind, a)), (j, (other, b)) in itertools.combinations(enumerate(rooms), 2):
         wall = shared_wall(a, b)
@@ -159,7 +159,7 @@ def direction(segment):
 
 
 def part_of(segment, start, length):
-    """The part of a segment that begins `start` [m] after its first point, in tenths of a millimetre."""
+    """The part of a segment that begins `start` [m] after its first point, rounded to 0.1 mm."""
     x, y, (u, v, _) = *segment[:2], direction(segment)
     ends = x + start * u, y + start * v, x + (start + length) * u, y + (start + length) * v
     return tuple(round(end, 4) for end in ends)

@@ -3,9 +3,9 @@
 They take the place of the paper's three scanned homes (section V) and of the images on which its segmentation
 net was trained. layout.py draws the rooms, furnish.py fills each; here they become one floor plan.
 
-    rooms   [(type, rectangle)], first what lies before the front door, then the corridor
+    rooms   [(type, rectangle)], first what lies outside the front door, then the corridor
     gaps    [Gap] doors and openings
-    key     int, what a room is furnished from; rooms with one key and one type are alike
+    key     int, seed of a room's furniture; rooms of the same key and type are alike
 """
 
 import math
@@ -25,7 +25,7 @@ from .layout import cut, direction, draw_gaps, draw_rooms, draw_walls
 
 BEFORE_DOOR_M, BEFORE_OPENING_M = 0.95, 0.7  # floor kept clear on both sides; a leaf swings 0.9 m
 IN_EVERY_HOME = {"bed", "table", "sofa", "refrigerator", "tv", "other"}
-TRIES = 10000  # of nine rooms, one layout in forty is good
+TRIES = 10000  # with nine rooms, one layout in forty is good
 
 
 def add_arguments(parser):
@@ -36,7 +36,7 @@ def add_arguments(parser):
 
 
 def run(args):
-    """One procedural home as a floor plan; in the place of another one, but of no other file."""
+    """Write a procedural home as a floor plan; it may replace another one, but no other file."""
     check_file("out", args.out)
     if Path(args.out).exists() and not re.fullmatch(r"home-\d+", name := World.load(args.out).name):
         raise ValueError(f"{args.out}: expected a procedural home or nothing, found {name}")
@@ -70,7 +70,7 @@ def home_plan(seed, aliasing=0.3):
 
 
 def draw_objects(rooms, gaps, aliasing, rng):
-    """Furniture of all rooms; None if one lacks what makes it such a room, or the home one of the classes."""
+    """Furniture of all rooms; None if a room lacks the piece that defines its type, or the home one of the classes."""
     objects, keys = [], {}
     for index, (kind, rectangle) in enumerate(rooms[1:], 1):
         own_key, new_key, alike = rng.integers(2**32), rng.integers(2**32), rng.random() < aliasing

@@ -24,23 +24,23 @@ from gnl.world import World
 
 from .rooms import make_home
 
-MODULES = "box", "furnish", "furniture", "layout", "rooms", "starts"  # that decide where one starts
+MODULES = "box", "furnish", "furniture", "layout", "rooms", "starts"  # modules that decide the start poses
 
 
 def add_arguments(parser):
     """Options of `python -m data_gen starts`."""
-    parser.add_argument("folder", help="where to write them: a floor plan a home, start poses a cell")
+    parser.add_argument("folder", help="folder to write to: a floor plan per home, start poses per cell")
     parser.add_argument("--cell", nargs=4, action="append", required=True, metavar=("WORLD", "M", "DEG", "SEED"),
                         help="seed of the home, T_xy, T_theta, seed; may be repeated")
-    parser.add_argument("--training", type=int, default=10_000, help="starts beyond the gap, a cell (10000)")
-    parser.add_argument("--tests", type=int, default=100, help="starts from anywhere, a cell (100)")
+    parser.add_argument("--training", type=int, default=10_000, help="training starts per cell, beyond the gap (10000)")
+    parser.add_argument("--tests", type=int, default=100, help="test starts per cell, from anywhere (100)")
     parser.add_argument("--validation", type=int, default=10, help="more of these, to choose a checkpoint by (10)")
     parser.add_argument("--jobs", type=int, default=1, help="processes (1)")
     parser.add_argument("--picture", action="store_true", help="draw both kinds of starts on the map, too")
 
 
 def run(args):
-    """Homes and start poses of cells of Table I, of those that lack one or the other."""
+    """Write homes and start poses of the cells that lack one or the other."""
     sizes = {"training": args.training, "tests": args.tests, "validation": args.validation}
     made_by = sizes | {"code": digest([digest_of_code(), digest_of_code(modules=["gaps"]),
                                        digest_of_code(Path(__file__).parent, MODULES)])}

@@ -1,7 +1,7 @@
 """Training views for the segmentation net: what a robot sees in many homes, and the true labels.
 
-The paper takes a net "off the shelf", trained on other images than those of its worlds. So the homes here are other
-homes than those in which a robot is localized: seeds from 0 on, where the worlds have 800 and more.
+The paper takes a net "off the shelf", trained on other images than those of its worlds. So the homes here are not
+those in which a robot is localized: seeds from 0 on, where the worlds have 800 and more.
 """
 
 from pathlib import Path
@@ -22,17 +22,17 @@ from .rooms import make_home
 # DIFFERS: the net learns from homes of the same kind as those where it is used; the paper's from photographs (ADE20K).
 LEAST_KINDS, LEAST_SHARE = 3, 0.01  # CHOICE: a view with fewer kinds of things, a bare wall mostly, teaches little
 
-MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # that decide what there is to see
+MODULES = "box", "furnish", "furniture", "layout", "rooms", "views"  # modules that decide what there is to see
 
 
 def add_arguments(parser):
     """Options of `python -m data_gen views`."""
     parser.add_argument("out", help="file of arrays to write (.npz)")
     parser.add_argument("--homes", type=int, default=40, help="homes with the seeds 0, 1, ... (40)")
-    parser.add_argument("--views", type=int, default=2400, help="views of all homes together (2400)")
-    parser.add_argument("--seed", type=int, default=0, help="of poses and noise (0)")
+    parser.add_argument("--views", type=int, default=2400, help="views in all (2400)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of poses and noise (0)")
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise (1)")
-    parser.add_argument("--kinds", type=int, default=LEAST_KINDS, help=f"kinds in each view, or more ({LEAST_KINDS})")
+    parser.add_argument("--kinds", type=int, default=LEAST_KINDS, help=f"fewest classes in a view ({LEAST_KINDS})")
 
 
 def run(args):
@@ -53,7 +53,7 @@ def run(args):
 
 
 def training_views(n_homes, n_views, seed, noise=1.0, n_kinds=LEAST_KINDS, progress=None):
-    """Views at random free poses, evenly from the homes 0 .. n_homes - 1, n_kinds classes or more fill 1 % of each.
+    """Views at random free poses, evenly from homes 0 .. n_homes - 1; n_kinds classes or more fill at least 1 % each.
 
     returns : rgb (n_views, 64, 64, 3) uint8, labels (n_views, 64, 64) uint8;  progress(share done)
     """

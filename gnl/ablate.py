@@ -1,7 +1,7 @@
-"""What the paper leaves open, measured: each of choices.py in the place of ours, and some cells run again.
+"""What the paper leaves open, measured: each choice of choices.py replaces ours, and some cells are run again.
 
-For the time of a run, in the process of that run, the other choice stands in the place of ours. Starts, seeds and luck
-stay, so that effects are differences in pairs.
+For the duration of a run, and in its process alone, the other choice replaces ours. Starts, seeds and luck stay the
+same, so that effects are paired differences.
 """
 
 import importlib
@@ -38,13 +38,13 @@ def add_arguments(parser):
     """Options of `python -m gnl ablate`."""
     parser.add_argument("--out", default="out/ablate", help="folder of results (out/ablate)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
-    parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md; our choices and "
-                        "true labels are run with them (all that can be measured)")
-    parser.add_argument("--page", help="a page like tutorials/open_points.md, to fill the effects into its tables")
+    parser.add_argument("--points", nargs="+", help="rows of tutorials/open_points.md; ours and "
+                        "true labels are run in any case (all that can be measured)")
+    parser.add_argument("--page", help="a page like tutorials/open_points.md, into whose tables the effects are filled")
 
 
 def run(args):
-    """Run every choice in every cell, where that is not done yet, and tell what each changed."""
+    """Run every choice in every cell, unless it is done already, and print what each changed."""
     if args.jobs < 1:
         raise ValueError(f"--jobs: expected at least 1, found {args.jobs}")
     points = {choice.point for choice in CHOICES}
@@ -100,12 +100,12 @@ def load(path):
 
 
 def name_of(choice, cell):
-    """For files: field-of-view-60-degrees-800-0.2m-10deg-seed0."""
+    """For file names: field-of-view-60-degrees-800-0.2m-10deg-seed0."""
     return "-".join(re.findall(r"[\w.]+", f"{choice.point} {choice.other}")) + f"-{cell.name}"
 
 
 def measure(choice, cell, senses, starts, settings, net=None):
-    """Outcomes of MV and of Ours under a choice, and what they cost; `net` in the place of that of the senses."""
+    """Outcomes of MV and of Ours under a choice, and what they cost; `net`, if given, replaces that of the senses."""
     began, (learning, testing) = now(), np.random.SeedSequence(cell.entropy).spawn(2)
     learning = learning.spawn(choice.luck)[-1] if choice.luck else learning
     parts, senses, grid = made_from(senses), replace(senses, seconds={}, views=0), PlaceGrid(senses.world)
@@ -132,7 +132,7 @@ def measure(choice, cell, senses, starts, settings, net=None):
 
 @contextmanager
 def in_place(constants):
-    """Other values in the place of constants {"module.NAME": value} of gnl, and back again."""
+    """Replace constants {"module.NAME": value} of gnl by these values, and put ours back at the end."""
     ours = {}
     try:
         for name, value in constants.items():
@@ -147,7 +147,7 @@ def in_place(constants):
 
 
 def effects(out, chosen):
-    """What MV and Ours get right more often with each choice than beside it, in points: rows of words."""
+    """How much more often MV and Ours are right with each choice than with its reference, in points: rows of text."""
     def right(choice, method):
         parts = [json.loads(cell_path(out, name_of(choice, cell)).read_bytes())["tests"][method] for cell in CELLS]
         return np.concatenate([answers(part) for part in parts])
@@ -167,7 +167,7 @@ def effects(out, chosen):
 
 
 def filled(page, measured):
-    """A page whose tables have the effects in the last cell of each row that begins with the name of a point."""
+    """The page with the effects filled into the last cell of each table row that begins with the name of a point."""
     words = {}
     for point, other, _beside, mv, ours in measured:
         words.setdefault(point, []).append(f"{other}: MV {mv}, Ours {ours}")

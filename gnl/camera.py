@@ -1,7 +1,7 @@
 """The camera: from the semantic strip to a first-person view, its colours and its true labels.
 
-An image column is a pile of surfaces, near to far: the front of each box that its ray crosses, and its top or its
-underside. Each surface covers an interval of rows; a pixel shows the first surface, near to far, that covers it.
+An image column is a pile of surfaces, near to far: the front of each box that its ray crosses, and the box's
+top or underside. Each surface covers an interval of rows; a pixel shows the nearest surface that covers it.
 
     H = C rows, columns   h camera height [m]   w inverse depth [1/m]   z height above the floor [m]
     row of a point:  y = (1 - (z - h) w / tan(fov / 2)) H / 2,   0 the upper rim of the image
@@ -18,18 +18,18 @@ from .strip import FACES, NEAREST_M, TOP, UNDERSIDE, cast, rim_slope
 
 HEIGHT_M = 1.25  # CHOICE: 1.25 m: table tops seen from above, refrigerators from the front
 SIZE_PX = 512
-RAYS_AT_ONCE = 4096  # as many as stay near the processor; twice as many where no photograph needs the room
-A_LITTLE = 1e-6  # 1/m, in inverse depth: by so much a top comes before what it touches
+RAYS_AT_ONCE = 4096  # as many as fit in the processor's cache; twice as many where no photograph needs the room
+A_LITTLE = 1e-6  # 1/m, in inverse depth: by this much a top counts as nearer than what it touches
 MOST_SURFACES = 61  # of one column, one bit each; what lies behind the 61 nearest is not drawn
-NO_SURFACE = 63  # bit of the edges of no surface; where no bit is on, the lowest that is on counts as this one
+NO_SURFACE = 63  # bit of edges that belong to no surface; the lowest bit counts as this one, too, where none is on
 
 
 @dataclass(frozen=True)
 class Surfaces:
     """What the columns of some views show: S surfaces of boxes, and R runs of pixels.
 
-    A run is a piece of a column that shows one surface; runs lie one behind the other, column by column from the
-    top, and fill the views. Behind the surfaces of boxes come two more, for all ceilings and for all floors.
+    A run is a piece of a column that shows one surface; runs come one after the other, column by column from the
+    top, and fill the views. After the surfaces of boxes come two more, for all ceilings and for all floors.
     """
 
     face: np.ndarray  # (S + 2,) int, box * FACES + one of its sides, TOP or UNDERSIDE; box N ceiling, N + 1 floor
@@ -47,9 +47,9 @@ class Surfaces:
 def render(world, poses, rng, size=SIZE_PX, noise=1.0, wanted=None):
     """First-person views and their true labels: poses (B, 3) -> rgb (n, H, H, 3) uint8, labels (n, H, H) uint8.
 
-    size   : H; 64 gives the same view at an eighth of the resolution (of up to 8 at once: more are drawn in parts)
+    size   : H; 64 gives the same views at an eighth of the resolution (if at most 8: more are drawn in parts)
     noise  : appearance noise of the photograph (see photo.py); 0 is a clean drawing
-    wanted : (B,) bool, whose views to draw: n of them, each as it would be among all B; all B if not given
+    wanted : (B,) bool, which views to draw: n of them, each as it would be among all B; all B if not given
     """
     poses, rgb, runs = _check(poses, size), [], []
     check_noise(noise)
@@ -79,7 +79,7 @@ def _check(poses, size):
 
 
 def _paint(runs, size):
-    """Images (B, H, H) uint8 of runs (label, length) in parts: all in one stroke, one column behind the other."""
+    """Images (B, H, H) uint8 of runs (label, length) in parts: all at once, one column after the other."""
     label, length = (np.concatenate(parts) for parts in zip(*runs, strict=True))
     return np.repeat(label, length).reshape(-1, size, size).transpose(0, 2, 1)
 
@@ -100,7 +100,7 @@ def _pile(world, strip, size):
     low, high = world.z.T.clip(0, world.wall_height)  # what goes through floor or ceiling ends there
     from_above, from_below = (high > 0) & (high < HEIGHT_M), (low > HEIGHT_M) & (low < world.wall_height)
     level, flat = np.where(from_above, high, low), np.where(from_above, TOP, UNDERSIDE)
-    capped = np.flatnonzero((from_above | from_below).take(box))  # crossings that show a top or an underside, too
+    capped = np.flatnonzero((from_above | from_below).take(box))  # crossings that also show a top or an underside
     capped_box, w_front = box.take(capped), w.take(capped)
     w_back = np.maximum(strip.w_out(capped), strip.w_wall.take(strip.ray.take(capped)))  # no farther than the wall
     which = np.append(box, len(low) + capped_box)  # where the two heights of each surface stand in a list
@@ -113,10 +113,11 @@ def _pile(world, strip, size):
     front, back = row(np.append(high, level), np.append(w, w_front)), row(np.append(low, level), np.append(w, w_back))
     begin, end = np.minimum(front, back), np.maximum(front, back)
     # A top belongs right behind its front; but what stands on it comes between the two. What begins where the top ends,
-    # a wall or the next piece of furniture, comes behind it.
+    # a wall or the next piece of furniture, comes behind it. Not done: an underside belongs behind what touches it from
+    # below, a top before what lies under the thing. In procedural homes that concerns one pixel in 5000 or fewer.
     nearness = np.append(w, np.where(world.carries.take(capped_box), w_back + A_LITTLE, w_front))
 
-    # Ray by ray, near to far. Each face comes with its rays in order: what merges such runs sorts fastest.
+    # Ray by ray, near to far. Each face comes with its rays in order: a sort that merges such runs is fastest.
     shown = np.flatnonzero(end > begin)
     far = ((1 - nearness.take(shown) * NEAREST_M) * 2 ** 30).astype(int)
     shown = shown.take(((ray.take(shown) << 31) + far).argsort(kind="stable"))
@@ -129,7 +130,8 @@ def _visible(pile, n_rays, size, n_boxes):
 
     Each surface of a column owns one bit, the nearest the lowest. Its first row switches the bit on, its end row
     off; between two such edges one sees the lowest bit that is on. Where none is, one sees the ceiling in the upper
-    half of the column and the floor in the lower; edges of no surface part the columns, and halves that lie bare.
+    half of the column and the floor in the lower; edges of no surface separate the columns, and the two
+    halves of a bare one.
     """
     ray, face, w, begin, end = pile
     S, H, half = len(ray), size, size // 2
@@ -140,13 +142,13 @@ def _visible(pile, n_rays, size, n_boxes):
     if count.max(initial=0) > MOST_SURFACES:
         return _visible([a[bit < MOST_SURFACES] for a in pile], n_rays, size, n_boxes)
 
-    # Mostly the last surface of a column, a wall, covers the row where ceiling and floor would meet.
+    # Usually the last surface of a column, a wall, covers the row where ceiling and floor would meet.
     bare = (count == 0) | (np.append(begin, 0).take(last) > half) | (np.append(end, 0).take(last) < half)
     # An edge is one number, pixel * 64 + bit: sorted, edges run down the columns. Short numbers are sorted faster.
     short = np.int32 if n_rays * H < 1 << 25 else np.int64
     start, top = ((ray * H << 6) + bit).astype(short), ((np.arange(n_rays + 1) * H << 6) + NO_SURFACE).astype(short)
     edges = start + (begin << 6), start + (end << 6), top, top[:-1][bare] + (half << 6)
-    edge = np.sort(np.concatenate(edges), kind="stable")  # four lists, each nearly in order: they are merged
+    edge = np.sort(np.concatenate(edges), kind="stable")  # four lists, each nearly in order: the sort merges them
     on = np.bitwise_xor.accumulate(np.uint64(1) << (edge & 63).astype(np.uint64))
     pixel = edge >> 6
     run = np.flatnonzero(pixel[1:] != pixel[:-1])
@@ -162,6 +164,6 @@ def _visible(pile, n_rays, size, n_boxes):
 
 
 def _chunks(n_views, size, n_rays=RAYS_AT_ONCE):
-    """Slices of the views, as many in each as stay near the processor; one even of no views."""
+    """Slices of the views, as many in each as fit in the cache; one even if there are no views."""
     step = max(1, n_rays // size)
     return [slice(i, i + step) for i in range(0, max(1, n_views), step)]

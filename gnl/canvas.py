@@ -1,4 +1,4 @@
-"""Paper to draw on; all is drawn four times as large and then shrunk, so that lines are smooth.
+"""A sheet to draw on; everything is drawn four times as large and then shrunk, so that lines are smooth.
 
     px   of the finished picture, (column, row), row 0 at the top
 """
@@ -38,7 +38,7 @@ class Canvas:
         self.pen.circle(_enlarged([middle])[0], SMOOTH * radius, fill, outline, round(SMOOTH * width))
 
     def arrow(self, middle, theta, length, colour=INK, rim=None):
-        """A dart that flies to the bearing theta, counter-clockwise from the right; a rim tells it from others."""
+        """A dart that points to the bearing theta, counter-clockwise from the right; a rim sets it off from others."""
         forward, aside = np.array([[1, -1, -0.6, -1], [0, 0.65, 0, -0.65]])[..., None] * length / 2
         ahead = np.array([np.cos(theta), -np.sin(theta)])
         self.polygon(middle + forward * ahead + aside * ahead[::-1] * [1, -1], colour, rim, 0.5)
@@ -78,5 +78,5 @@ def text_width(words, size):
 
 
 def _enlarged(points):
-    """For Pillow, to which a whole number is the middle of a pixel, not its rim."""
+    """For Pillow, to which a whole number is the middle of a pixel, not its edge."""
     return [(SMOOTH * float(x) - 0.5, SMOOTH * float(y) - 0.5) for x, y in points]

@@ -1,6 +1,6 @@
 """Checkpoints: what the values of a store of state-action pairs were at moments of its past (section IV-D).
 
-Pairs are only ever added, so those that were there at a checkpoint are the first ones: their number says which. A
+Pairs are only ever added, so those that were there at a checkpoint are the first ones: their count says which. A
 later pair is what the paper calls "not available" (N/A), and it takes no room at all. Of the values we keep only those
 that changed since the checkpoint before: 12 bytes each, where a state of 360 places has 1440. The states themselves
 are stored once.
@@ -12,7 +12,7 @@ import numpy as np
 class Checkpoints:
     """For each checkpoint and action: how many pairs there were, which values had changed, and to what."""
 
-    NAMES = "born", "n_changed", "changed", "changed_to"  # of the arrays in a file, each with the number of an action
+    NAMES = "born", "n_changed", "changed", "changed_to"  # of arrays in a file, each followed by an action's number
 
     def __init__(self, n_actions):
         self.entries = []
@@ -62,7 +62,7 @@ class Checkpoints:
             if not n_changed.sum() == len(changed) == len(to):
                 raise ValueError(f"{n_changed.sum()} changes counted, {len(changed)} and {len(to)} there")
             changed, to = (np.split(part, np.cumsum(n_changed)[:-1]) for part in (changed, to))
-            # Of no checkpoints at all np.split makes one empty piece.
+            # From no checkpoints at all np.split makes one empty piece.
             by_action.append(list(zip(born.tolist(), changed, to, strict=False)))
         self.entries = list(map(list, zip(*by_action, strict=True)))
         for checkpoint in range(len(self)):

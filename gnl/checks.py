@@ -1,4 +1,4 @@
-"""What an argument must be, in one way everywhere: a ValueError names it, what was expected and what was found."""
+"""Checks of arguments, alike everywhere: a ValueError names the argument, what was expected and what was found."""
 
 import numpy as np
 

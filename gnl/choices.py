@@ -1,8 +1,8 @@
 """Other choices than ours where the paper is open: `python -m gnl ablate` measures what each would change.
 
 A choice is a rule of the episode, an argument of the store or of the robot, or a constant by its name. The constant
-must be read when it is used: a default (N_PARTICLES) was read when its function was defined; for those there is
-`partial`. Functions are those of a module: a choice is sent to other processes, and a lambda cannot be.
+must be read when it is used: a default argument (N_PARTICLES) was read when its function was defined; for those there
+is `partial`. Functions must have a name in a module: a choice is sent to other processes, and a lambda cannot be.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ from .nn import softmax
 from .other_stores import BruteForce, Endless, OfAnyAction, Shrunk
 from .particles import FLOOR, ParticleFilter
 from .places import wrap_angle
-from .planners import greedy  # itself, when another one stands in its place
+from .planners import greedy  # the original, even while planners.greedy is replaced
 from .ranks import reciprocal_ranks
 from .robot import FORWARD, LEFT, N_ACTIONS, Motion, Robot
 from .scene_graph import VIEW_PX
@@ -38,14 +38,14 @@ class Choice:
     motion: Motion = Motion()
     constants: dict = field(default_factory=dict)
     of_training: dict = field(default_factory=dict)  # constants while NNQL learns
-    n_more: int = 0  # numbers of a state beside one for each place
+    n_more: int = 0  # numbers in a state besides one for each place
     true_labels: bool = False  # instead of the net's; then it is compared with our choice of true labels
     of_net: dict = field(default_factory=dict)  # other options of `python -m data_gen views`, for a net of its own
-    anew: bool = False  # the GCN is learned anew; the next two are how
+    anew: bool = False  # the GCN is learned anew; the next two say how
     of_gcn: dict = field(default_factory=dict)  # other arguments of learned.learn_places
     views_beyond: Callable | None = None  # the gap from the tests beyond which its views lie; None: anywhere
     starts_beyond: Callable | None = None  # the gap beyond which NNQL's starts lie; None: our starts
-    luck: int = 0  # which other seed of NNQL's training, and of the classifier's if it learns anew; 0: ours
+    luck: int = 0  # which other seed for NNQL's training, and for the classifier's if it is learned anew; 0: ours
 
 
 def probabilities(scores, _particles, _step, _actions):
@@ -78,7 +78,7 @@ def with_context(scores, _particles, step, actions):
 
 
 def without_context(scores, _particles, _step, _actions):
-    """The same for whatever was done: one context for all."""
+    """The same, but with one context whatever was done."""
     return np.append(reciprocal_ranks(scores), np.zeros((len(scores), 1), np.float32), 1)
 
 
@@ -108,20 +108,20 @@ def first_of_equals(q, _rng):
 
 
 def finest(world, poses, rng, size, noise, wanted=None):
-    """True labels of all 512 x 512 pixels; as camera.render, and the same luck is drawn."""
+    """True labels of all 512 x 512 pixels; like camera.render, and with the same luck."""
     rgb, _ = render(world, poses, rng, size, noise, wanted)
     return rgb, true_labels(world, poses if wanted is None else poses[wanted], VIEW_PX)
 
 
 def far_or_turned(poses, tests, t_xy_m, t_theta_rad):
-    """Whether each pose is not both near to one of the tests and turned as it is; as gaps.beyond_gap."""
+    """Whether each pose differs from each test enough in location or in bearing; like gaps.beyond_gap."""
     distance = np.hypot(*(poses[:, None, :2] - tests[:, :2]).T)
     turned = abs(wrap_angle(poses[:, None, 2] - tests[:, 2])).T
     return ((distance > t_xy_m) | (turned > t_theta_rad)).all(0)
 
 
 def touching_at_corners(labels):
-    """Regions whose pixels are connected by sides or corners (8-connected): as scene_graph.regions."""
+    """Regions whose pixels are connected by sides or corners (8-connected); like scene_graph.regions."""
     found = []
     for view, image in enumerate(labels):
         for label in np.unique(image):
@@ -134,26 +134,26 @@ def touching_at_corners(labels):
 
 
 def plain_sums(edges, n_nodes, dtype=np.float32):
-    """A + I: each node sums its neighbours and itself as they are; as gcn.normalise_adjacency."""
+    """A + I: each node sums its neighbours and itself as they are; like gcn.normalise_adjacency."""
     adjacency = normalise_adjacency(edges, n_nodes, dtype)
     adjacency.data[:] = 1
     return adjacency
 
 
 def sum_forward(node_features, starts):
-    """A graph is the sum of its nodes; as gcn.mean_forward."""
+    """A graph is the sum of its nodes; like gcn.mean_forward."""
     mean, (count,) = mean_forward(node_features, starts)
     return mean * count[:, None].astype(mean.dtype), (count,)
 
 
 def sum_backward(dout, cache):
-    """Every node of a graph gets all of it; as gcn.mean_backward."""
+    """Every node of a graph gets its whole gradient; like gcn.mean_backward."""
     count, = cache
     return mean_backward(dout * count[:, None].astype(dout.dtype), cache)
 
 
 class Unresampled(ParticleFilter):
-    """Particles that are never drawn anew, and keep their weights."""
+    """Particles that are never resampled and keep their weights."""
 
     def resample(self):
         pass
@@ -171,7 +171,7 @@ def _five_times(point, other, *args, **options):
     return [Choice(point, other + (f", seed {n}" if n else ""), *args, **options, luck=n) for n in range(5)]
 
 
-PLAIN_MEAN = {"k": 64, "alpha": 1.0}  # a pair is worth what came of it the last time, and not what its neighbours are
+PLAIN_MEAN = {"k": 64, "alpha": 1.0}  # a pair's value is what came of it last time; no trace of its neighbours
 CHOICES = [
     Choice("labels of the views", "true labels", true_labels=True, anew=True),
     Choice("camera height", "0.8 m", constants={"camera.HEIGHT_M": 0.8}, true_labels=True, anew=True),

@@ -6,7 +6,7 @@ A label image holds the index of a class in CLASSES: 0 wall, 1 floor, ... 9 othe
 import numpy as np
 
 # To add one: its name and its constant below, PALETTE, the three tables of colours in world.py, GRAIN in photo.py, and
-# things that bear it in data_gen/furniture.py; then learn anew. Tests that know the paper's ten will say so.
+# things of that class in data_gen/furniture.py; then learn anew. Tests that expect the paper's ten will fail.
 CLASSES = ("wall", "floor", "ceiling", "bed", "door", "table", "sofa", "refrigerator", "tv", "other")
 WALL, FLOOR, CEILING, BED, DOOR, TABLE, SOFA, REFRIGERATOR, TV, OTHER = range(len(CLASSES))
 N_CLASSES = len(CLASSES)
@@ -25,7 +25,7 @@ def class_of(name):
     return CLASSES.index(name) if name in CLASSES else OTHER
 
 
-# Indices 1..150 of the ADE20K scene parsing benchmark that are one of the ten; all others, and 0, are `other`.
+# Indices 1..150 of the ADE20K scene parsing benchmark that map to one of the ten; all others, and 0, are `other`.
 # The strict reading: only the class itself ("bed"), not its relatives ("cradle").
 ADE20K = {1: WALL, 4: FLOOR, 6: CEILING, 8: BED, 15: DOOR, 16: TABLE, 24: SOFA, 51: REFRIGERATOR, 90: TV}
 

@@ -1,9 +1,9 @@
-"""Comparing methods that ran on the same episodes: differences in pairs, with intervals.
+"""Comparing methods that ran on the same episodes: paired differences, with intervals.
 
     d_i = right_i(A) - right_i(B) in {-1, 0, 1},   interval = mean(d) +- 1.96 std(d) / sqrt(n)
 
 Pairs share start, noise and particles, so d varies less than the difference of two independent percentages. Over
-many cells the cells are what varies, too: the bootstrap draws whole cells (clusters), not episodes.
+many cells the cells themselves vary, too: the bootstrap draws whole cells (clusters), not episodes.
 """
 
 import numpy as np
@@ -55,9 +55,9 @@ def mcnemar(a, b):
 
 
 def episodes_needed(difference, std):
-    """Pairs that show a true difference at 95 % in 80 % of all experiments: ((1.96 + 0.84) std / difference)^2.
+    """Pairs needed to show a true difference at 95 % in 80 % of all experiments: ((1.96 + 0.84) std / difference)^2.
 
-    std : standard deviation of d over pairs; of two unpaired methods of p and q right sqrt(p (1 - p) + q (1 - q))
+    std : standard deviation of d over pairs; if unpaired, with shares p and q right, sqrt(p (1 - p) + q (1 - q))
     """
     ratio = (Z95 + Z80) * std / difference if difference else np.inf
     if not abs(ratio) < 1e9:  # NaN compares as false

@@ -27,7 +27,7 @@ TRIES = 40  # episodes looked through for one that starts in doubt and ends well
 
 @dataclass(frozen=True)
 class Scale:
-    """How much the demonstration learns and tests; behind it the paper's numbers."""
+    """How much the demonstration learns and tests; the comments give the paper's numbers."""
 
     net_epochs: int = 4
     gcn_views: int = 5000  # 10,000
@@ -44,7 +44,7 @@ def add_arguments(parser):
     parser.add_argument("--views", required=True, help="training views of other homes, from `python -m data_gen views`")
     parser.add_argument("--out", default="out", help="folder for what is learned and drawn (out)")
     parser.add_argument("--pictures", help="folder for the pictures (OUT/demo)")
-    parser.add_argument("--seed", type=int, default=0, help="of what is learned and tested (0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of all that is learned and tested (0)")
     parser.add_argument("--noise", type=float, default=1.0, help="appearance noise of the views (1)")
     for name, default in vars(Scale()).items():
         parser.add_argument(f"--{name.replace('_', '-')}", type=int, default=default, metavar="N",
@@ -59,7 +59,7 @@ def run(args):
 
 
 def play(args, scale, helper):
-    """The stages one by one; `helper` is an executor of one process for the other core."""
+    """The stages one by one; `helper` is an executor with one process, for a second core."""
     world = World.load(args.plan)
     robot, grid = Robot(world), PlaceGrid(world)
     x0, y0, x1, y1 = world.bounds
@@ -75,7 +75,7 @@ def play(args, scale, helper):
 
 
 def learn(args, scale, helper, world, robot, grid):
-    """Learn what is not in its file yet, and say how good it is: Senses, the NNQL store, the sequence of Scan."""
+    """Learn what is in no file yet, and print how good it is; returns Senses, the NNQL store, the sequence of Scan."""
     parts = Path(args.out) / "learned"
     known = set(parts.glob("*.npz"))
 
@@ -98,7 +98,7 @@ def learn(args, scale, helper, world, robot, grid):
     senses = Senses(world, net, None, args.noise)
     settings = {"plan": learned.digest(world.plan), "noise": args.noise,
                 "net": learned.digest([views_made_by, scale.net_epochs, args.seed])}
-    # In few epochs more is learned at twice the rate that the paper's would be for as large a batch.
+    # In few epochs more is learned at twice the paper's rate (once that is scaled to the size of the batch).
     how = {"epochs": scale.gcn_epochs, "batch": scale.gcn_batch, "rate": 2 * gcn.RATE * scale.gcn_batch / gcn.BATCH}
     senses.gcn = learned.place_classifier(parts, senses, grid, scale.gcn_views, args.seed, settings, helper, stage,
                                           **how)
@@ -118,7 +118,7 @@ def learn(args, scale, helper, world, robot, grid):
 
 
 def test(args, senses, robot, grid, plans, starts):
-    """Let every method start from the same poses, and print what became of it."""
+    """Run every method from the same poses, and print how each fared."""
     stage = Stage("test")
     senses.seconds, senses.views = {}, 0
     records = {}
@@ -170,7 +170,7 @@ def print_table(records):
 
 
 def print_costs(senses):
-    """Milliseconds a view of each stage, episodes side by side."""
+    """Milliseconds per view of each stage, episodes side by side."""
     cost = {stage: 1000 * seconds / senses.views for stage, seconds in senses.seconds.items()}
     print(f"a view of 64 x 64, {episode.SIDE_BY_SIDE} at once, costs {sum(cost.values()):.1f} ms "
           f"(the paper: {', '.join(f'{stage} {ms:g}' for stage, ms in VIEW_MS.items())}):")
@@ -180,7 +180,7 @@ def print_costs(senses):
 def draw_stages(folder, senses, grid, starts, rng):
     """A picture of the home, and of each stage for the start from which there is most to see.
 
-    It is one of those of which the net gets as many pixels right as on average: others would not show what it can do.
+    It is one where the net gets no fewer pixels right than on average: others would not show what it can do.
     """
     world, size = senses.world, segnet.SIZE_PX
     small, true = render(world, starts, copy.deepcopy(rng), size, senses.noise)
@@ -217,12 +217,12 @@ def _labels(senses, rgb, true):
 
 
 def telling_episode(senses, robot, grid, store, starts, seed, progress):
-    """The first episode of Ours with two wrong answers at first and two right ones elsewhere at last, or nearly so."""
+    """The first episode of Ours whose first two answers are wrong, its last two right and elsewhere, or nearly so."""
     telling, most = None, -1
     for i, start in enumerate(starts[:TRIES]):
         looks = replay.collect(senses, robot, grid, planners.greedy(store), start, [seed, i], store)
         right = [look.answer == look.place for look in looks]
-        moved = grid.location_of(looks[0].answer) != grid.location_of(looks[-1].answer)  # not the robot alone
+        moved = grid.location_of(looks[0].answer) != grid.location_of(looks[-1].answer)  # not only the robot
         points = 16 * right[-1] + 8 * (not right[0]) + 4 * moved + 2 * right[-2] + (not right[1])
         if points > most:
             telling, most = looks, points

@@ -1,7 +1,7 @@
 """Pictures: homes, views, strips, graphs and ranks, with Pillow alone.
 
 Every function returns a PIL.Image in RGB; lengths are in px of the finished picture. No stage of the algorithm needs
-a picture, so this module may use all of them.
+a picture, so this module may import all of them.
 """
 
 import io
@@ -32,7 +32,7 @@ from .scene_graph import VIEW_PX, unpack_words
 SIZES = ("small", "medium", "large")
 LOCATIONS = ("upper left", "upper centre", "upper right", "left", "centre", "right",
              "lower left", "lower centre", "lower right")
-MARKS = {  # what stands for what on a map and in a strip, drawn at a place of a page
+MARKS = {  # symbols on maps and in strips, each drawn at (x, y) on a page
     "start": lambda page, x, y: page.arrow((x - 1, y), 0.4, 14, QUIET),
     "pale": lambda page, x, y: page.box(x - 7, y - 6, x + 7, y + 7, colour_of(OTHER, 70), QUIET),
     "robot": lambda page, x, y: page.dial((x, y), 0.4, 7, ROBOT),
@@ -45,7 +45,7 @@ FREE, HIDDEN = N_CLASSES, N_CLASSES + 1  # what a strip shows besides classes
 
 
 def home(world, width_px=640, grid=None, starts=(), shown=None):
-    """A home from above, the cells of its places, poses as little arrows, one of them `shown`; below what is what."""
+    """A home from above, the cells of its places, `starts` as little arrows, `shown` as a robot; below, legends."""
     canvas, marks = Map(world, width_px, grid=grid), {}
     if len(starts):
         canvas.starts(starts, QUIET)
@@ -85,7 +85,7 @@ def legend(classes=range(N_CLASSES), marks=None, size=12):
 
 
 def strip(world, dense, width_px=512, height_px=250):
-    """The semantic strip of one view: rays from left to right, distance upwards; behind the last crossing hatched.
+    """The semantic strip of one view: rays from left to right, distance upwards; hatched behind the last crossing.
 
     dense : near, far [m] and box of each crossing, (C, D) each: one view of Strip.dense();  width, height : of the plot
     """
@@ -129,7 +129,7 @@ def graph(graphs, picture, full=True):
     words = unpack_words(graphs.words)
     colours = [colour_of(label) for label, _, _ in words]
     names = [f"{CLASSES[c]}, {SIZES[s]}, {LOCATIONS[l]}" if full else CLASSES[c] for c, s, l in words]
-    taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name shall cover them, nor another name
+    taken = np.hstack([middles - 6, middles + 6])  # the nodes; no name may cover them, or another name
     along, (a, b) = np.linspace(0, 1, 40)[:, None, None], middles[graphs.edges].swapaxes(0, 1)
     lines = (a + along * (b - a)).reshape(-1, 2)  # points of the edges; no name should cover them
     for middle, name in zip(middles, names, strict=True):
@@ -152,7 +152,7 @@ def graph(graphs, picture, full=True):
 
 
 def ranks(grid, values, true_place=None, n=8, width_px=230, heads=("rank", "place", "1 / rank")):
-    """The n places of the greatest values (K,), reciprocal ranks or beliefs: rank, cell, bearing, value.
+    """The n places with the greatest values (K,), reciprocal ranks or beliefs: rank, cell, bearing, value.
 
     The true place is green, and stands last if it is not among them.
     """
@@ -203,7 +203,7 @@ def sheet(pictures, titles=None, columns=None, margin=12):
 
 
 def _spot(node, width, height, taken, lines, size):
-    """Where the words of a node go: near it, in the picture, as little as can be over the boxes `taken` and `lines`."""
+    """Where a node's words go: near it, in the picture, covering as little as possible of boxes `taken` and `lines`."""
     def cost(box):
         low, high = np.maximum(box[:2], taken[:, :2]), np.minimum(box[2:], taken[:, 2:])
         overlap = (high - low).clip(0).prod(1).sum()

@@ -14,7 +14,7 @@ from .draw import sheet
 BETTER, WORSE = np.array([0, 114, 178]), np.array([213, 94, 0])
 LINES = {"Ours": (0, 114, 178), "MV": (112, 116, 124), "Scan": (0, 140, 100), "Ours+": (213, 94, 0)}
 USUAL = BELIEF, ROBOT, INK, QUIET
-CELL_PX, RIM_PX, STRONGEST = (41, 34), (52, 44), 15.0  # points at which a colour is full
+CELL_PX, RIM_PX, STRONGEST = (41, 34), (52, 44), 15.0  # points at which a colour is at its strongest
 
 
 def heat_maps(of_world, gaps_m, gaps_deg):
@@ -42,7 +42,7 @@ def _heat_map(points, gaps_m, gaps_deg):
 
 
 def shade(value):
-    """From white at none to blue or orange at the strongest difference, light enough for its number."""
+    """White for no difference, blue or orange for the strongest; light enough to read its number on."""
     share = 0.65 * min(1.0, abs(value) / STRONGEST)
     mixed = (1 - share) * np.array(PAPER) + share * (BETTER if value > 0 else WORSE)
     return tuple(mixed.round().astype(int).tolist())
@@ -67,8 +67,8 @@ def curves(of_world, width=260, height=190):
 def lines(of_name, x_ticks, y_ticks, x_name, width=460, height=240, colours=(), names_px=52, y_name=""):
     """Lines, each with its name at its end; x_ticks, y_ticks: {value: words}, from the least to the greatest.
 
-    of_name  : {name: (x, y)}, or (x, y, low, high) for a band around the line; of one point, a dot
-    colours  : {name: colour}; of others the usual ones in turn
+    of_name  : {name: (x, y)}, or (x, y, low, high) for a band around the line; a single point is a dot
+    colours  : {name: colour}; the others take the usual ones in turn
     names_px : room for the names at the right
     """
     left, top, bottom = 44, 8 + 18 * bool(y_name), 40

@@ -1,6 +1,6 @@
 """Scene graphs of label images from elsewhere, printed and drawn: any picture of class indices, ours or ADE20K's.
 
-A picture all in our colours is read by them: a drawing program may have put its palette in another order.
+A picture entirely in our colours is read by colour, not by index: a drawing program may have reordered its palette.
 """
 
 from pathlib import Path
@@ -16,7 +16,7 @@ from .terminal import count
 
 def add_arguments(parser):
     """Options of `python -m gnl graph`."""
-    parser.add_argument("labels", help=f"image of one class index a pixel, 0..{N_CLASSES - 1} in the order "
+    parser.add_argument("labels", help=f"image with one class index per pixel, 0..{N_CLASSES - 1} in the order "
                                        f"{', '.join(CLASSES)}, or in the colours of our pictures")
     parser.add_argument("--ade20k", action="store_true", help="the indices are ADE20K's 0..150, 0 for no label")
     parser.add_argument("--out", help="picture to write, scaled to 512 x 512 as the boxes "
@@ -24,7 +24,7 @@ def add_arguments(parser):
 
 
 def run(args):
-    """Print the graph, a node a line, and draw it over the labels."""
+    """Print the graph, one node per line, and draw it over the labels."""
     labels, coloured = load(args.labels, args.ade20k)
     out = Path(args.out) if args.out else Path(args.labels).with_name(Path(args.labels).stem + "-graph.png")
     if out.suffix.lower() != ".png":
@@ -48,7 +48,7 @@ def run(args):
 
 
 def load(path, ade20k=False):
-    """Labels (H, W) in 0..9 of an image, and whether its colours tell them; ValueError if nothing does."""
+    """Labels (H, W) in 0..9 of an image, and whether they were read by colour; ValueError if neither way works."""
     try:
         with Image.open(path) as image:
             image.load()
@@ -79,7 +79,7 @@ def load(path, ade20k=False):
 
 
 def by_colour(rgb):
-    """Labels (H, W) of a picture (H, W, 3) in the colours of PALETTE; N_CLASSES where there is another one."""
+    """Labels (H, W) of a picture (H, W, 3) in the colours of PALETTE; N_CLASSES where there is any other colour."""
     label_of = np.full(1 << 24, N_CLASSES, np.uint8)
     label_of[PALETTE @ (1 << np.array([16, 8, 0]))] = range(N_CLASSES)
     red, green, blue = np.moveaxis(rgb.astype(np.int32), -1, 0)

@@ -1,7 +1,7 @@
 """Episodes: sense, plan, act, many robots side by side.
 
 A robot looks once where it starts, then L times plans, acts and looks again. After every look the particle filter
-gives an answer: the place that most of the belief lies in.
+gives an answer: the place that holds the most belief.
 
     B episodes side by side   L cycles after the first view   K places
 """
@@ -19,10 +19,10 @@ from .places import check_poses
 from .ranks import reciprocal_ranks
 
 LENGTH = 4
-SIDE_BY_SIDE = 64  # episodes in lockstep: some fifty calls of NumPy cost the same for one as for many
+SIDE_BY_SIDE = 64  # episodes in lockstep: some fifty NumPy calls cost much the same for one as for many
 
 
-# What the paper leaves open in an episode: each of these is one way to close it, and Rules says which holds.
+# What the paper leaves open in an episode: each function settles one point, and Rules says which ones are used.
 
 def probability(scores):
     """Likelihood of each place given a view: the classifier's probability and a floor, (B, K)."""
@@ -56,7 +56,7 @@ class Rules:
 
 @dataclass(frozen=True)
 class Record:
-    """What B episodes were: T looks each, T = 1 + number of actions."""
+    """What happened in B episodes: T looks each, T = 1 + number of actions."""
 
     poses: np.ndarray  # (B, T, 3) true poses
     actions: np.ndarray  # (B, T - 1)
@@ -73,11 +73,11 @@ class Record:
 def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
     """Run one episode from each of the poses `starts` (B, 3); returns a Record.
 
-    The streams of appearance, motion, filter and exploration are independent children of `seed`. They are drawn
-    alike in every step, so two planners see the same start, noise and particles until their actions differ.
-    watch(step, poses, scores, filter, pooled, before, actions, states, places, right, belief) is called by these names
-    after every look: that is where a learner learns. `before` are the states in which `actions` were chosen, `states`
-    those to which they led; at the first look `before` and `actions` are None.
+    The streams of appearance, motion, filter and exploration are independent children of `seed`. Each step
+    draws from them alike, so two planners see the same start, noise and particles until their actions differ.
+    watch(step, poses, scores, filter, pooled, before, actions, states, places, right, belief) is called with these
+    keywords after every look: that is where a learner learns. `before` are the states in which `actions` were chosen,
+    `states` those to which they led; at the first look `before` and `actions` are None.
     """
     rules = rules or Rules()
     appearance, motion, filtering, exploring = map(np.random.default_rng, _seed(seed).spawn(4))
@@ -90,7 +90,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
             actions = senses.timed("plan", plan, step - 1, states, exploring)
             if actions is None:
                 break
-            actions = np.array(actions)  # a planner may use its own again
+            actions = np.array(actions)  # a planner may reuse its own array
             poses, odometry, _ = senses.timed("robot", robot.step, poses, actions, motion)
             done.append(actions)
         scores = senses.scores(poses, appearance)
@@ -114,7 +114,7 @@ def run(senses, robot, grid, plan, starts, seed, rules=None, watch=None):
 
 
 def run_all(senses, robot, grid, plan, starts, seed, progress=None, **options):
-    """`run` for any number of starts, some side by side, each group with a seed of its own; one Record.
+    """`run` for any number of starts, in groups side by side, each with a seed of its own; one Record.
 
     progress(share done, share right after the last look) is called after each group
     """
@@ -140,11 +140,11 @@ def train_nnql(senses, robot, grid, starts, seed, rules=None, checkpoint_every=N
                progress=None):
     """Learn Q-values in one episode from each start (n, 3); returns the NNQL with its checkpoints.
 
-    checkpoint_every : episodes from one checkpoint to the next. No group of robots side by side goes on beyond one, so
-    that the same seed learns otherwise with another number, or with none
-    store : an NNQL of other settings, or one that goes on learning (its exploration begins anew)
-    watch(step, **what happened) is called after every look, as in `run`; the rules' reward gets what happened, too, and
-    `done`, whether nothing comes after
+    checkpoint_every : episodes from one checkpoint to the next. Every group of robots side by side ends at or
+    before one, so the same seed learns differently with another number, or with none
+    store : an NNQL with other settings, or one to train further (exploration begins anew)
+    watch(step, **what happened) is called after every look, as in `run`; the rules' reward is given the same, and
+    `done`, whether the episode ends with this step
     progress(share done, recent share of right answers) is called after each group
     """
     if checkpoint_every is not None:
@@ -181,7 +181,7 @@ def race(senses, robot, grid, starts, seed, rules=None):
 
     A sequence is worth the belief that it leaves in the true place, on average. Of 41 the luckiest looks best, so they
     race: after each round the best third goes on, from three times as many new starts, the same for all. Those that
-    repeat one action stay to the end: few others beat them, and options.py asks what they are worth.
+    repeat one action stay to the end: few others beat them, and options.py needs their worth.
     """
     length, starts = (rules or Rules()).length, np.asarray(starts)
     if length < 1 or not len(starts):
@@ -206,14 +206,14 @@ def race(senses, robot, grid, starts, seed, rules=None):
 
 
 def _update(particles, odometry, likelihood_of_view):
-    """One cycle of the filter; it resamples before it moves, so that what it answers from is still weighed."""
+    """One cycle of the filter; it resamples before it moves, so that it still answers from weighted particles."""
     particles.resample()  # CHOICE: before every move; the paper does not say whether particles are drawn anew.
     particles.predict(odometry)
     particles.weigh(likelihood_of_view)
 
 
 def _seed(seed):
-    """A fresh SeedSequence of a number or of another one, which would not spawn the same children twice."""
+    """A fresh SeedSequence from a number or from another one, which itself would not spawn the same children twice."""
     if isinstance(seed, np.random.SeedSequence):
         return np.random.SeedSequence(seed.entropy, spawn_key=seed.spawn_key)
     return np.random.SeedSequence(seed)

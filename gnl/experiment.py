@@ -3,7 +3,7 @@
 A cell is a world, a gap (T_xy, T_theta) between the starts of training and of the tests, and a seed. All its methods
 are tested from the same starts with the same luck, so that they can be compared in pairs.
 
-    SV     the first view alone               MV     chance           Scan   the best fixed sequence of actions
+    SV     the first view alone               MV     random actions   Scan   the best fixed sequence of actions
     Ours   the paper's NNQL                   DA     Ours at the checkpoint that is best on a few validation episodes
     Oracle Ours at the checkpoint that is best on the tests themselves: that is cheating, and shows what DA could gain
     Ours+  an action chosen once and repeated (options.py; not in the paper)
@@ -45,12 +45,12 @@ class Cell:
 
     @property
     def name(self):
-        """For files: 800-0.2m-10deg-seed0."""
+        """For file names: 800-0.2m-10deg-seed0."""
         return f"{self.world}-{self.t_xy_m:g}m-{self.t_theta_deg}deg-seed{self.seed}"
 
     @property
     def entropy(self):
-        """What its random numbers grow from."""
+        """What its random numbers are seeded with."""
         return [self.seed, self.world, round(1000 * self.t_xy_m), self.t_theta_deg]
 
 
@@ -99,12 +99,12 @@ def made_from(senses):
 
 
 def now():
-    """Seconds on the clock and of this process."""
+    """Wall-clock time and processor time of this process [s]."""
     return time.time(), time.process_time()
 
 
 def costs(senses, began, n_pairs):
-    """Seconds of each stage, and where and with what they were spent."""
+    """Seconds of each stage, memory, and the machine and the library versions behind them."""
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1024 if sys.platform == "darwin" else 1)  # [kB]
     return {"seconds": time.time() - began[0], "of processor": time.process_time() - began[1], "views": senses.views,
             "of stages": senses.seconds, "pairs": n_pairs, "host": platform.node(), "machine": platform.platform(),
@@ -119,7 +119,7 @@ def costs_path(path):
 
 
 def load_cell(path):
-    """Outcomes and costs of a cell from its two files, looked through for all that the report asks of them."""
+    """Outcomes and costs of a cell from its two files, checked for all that the report needs."""
     def check(result):
         curve([result]), right(result)  # each fails where something is missing
         if lacking := {"MV", "Scan", "Ours"} - from_training(result).keys():

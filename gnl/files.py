@@ -27,14 +27,14 @@ def write_whole(path, data):
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:  # it would name the temporary file
+    except OSError as error:  # which would name the temporary file
         raise OSError(error.errno, error.strerror, str(path)) from None
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
         mask = os.umask(0)
         os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; give back the usual rights
+        os.chmod(temporary, 0o666 & ~mask)  # mkstemp makes private files; restore the usual permissions
         os.replace(temporary, path)
     except BaseException as error:
         Path(temporary).unlink(missing_ok=True)  # it is gone if the interruption came after the renaming
@@ -44,7 +44,7 @@ def write_whole(path, data):
 
 
 def check_folder(option, path):
-    """ValueError if there is a file where a folder will be, no name for it, or no right to write there."""
+    """ValueError if there is a file where a folder is to be, no name for it, or no permission to write there."""
     if not str(path):
         raise ValueError(f"{option}: expected a folder, found no name")
     there = next(part for part in (Path(path), *Path(path).parents) if part.exists())
@@ -55,7 +55,7 @@ def check_folder(option, path):
 
 
 def check_file(option, path):
-    """ValueError if there is no name for a file, or its folder cannot be."""
+    """ValueError if a file has no name, or its folder cannot be made."""
     if not str(path):
         raise ValueError(f"{option}: expected a file, found no name")
     check_folder(option, Path(path).parent)
@@ -70,7 +70,7 @@ def save_arrays(path, made_by, **arrays):
 
 
 def load_arrays(path):
-    """Arrays of a file of `save_arrays` as a dict, and what it was `made_by`; ValueError for any other file."""
+    """Arrays in a file of `save_arrays` as a dict, and what it was `made_by`; ValueError for any other file."""
     if not Path(path).exists():
         raise ValueError(f"{path}: expected a file of arrays, found nothing")
     try:
@@ -100,7 +100,7 @@ def load_json(path, what, check=None):
     """
     try:
         found = json.loads(Path(path).read_bytes())
-    except (OSError, ValueError, RecursionError) as error:  # JSON may be nested deeper than Python goes
+    except (OSError, ValueError, RecursionError) as error:  # JSON may be nested deeper than Python can follow
         raise ValueError(f"{path}: expected {what}, found {error}") from None
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected {what}, found a {type(found).__name__}")

@@ -19,9 +19,9 @@ NAME_PX, SMALL_PX, AIR_PX = 13, 11, 5  # names of rooms: size of the letters, in
 
 
 class Map(Canvas):
-    """A home from above; with a PlaceGrid its cells; as high as it needs if no height is set.
+    """A home from above, with its cells if there is a PlaceGrid; as high as needed if no height is set.
 
-    Hanging things are pale with a strong outline, flat ones pale. Names of rooms stand above all else.
+    Hanging things are pale with a strong outline, flat ones just pale. Names of rooms stand above all else.
     """
 
     def __init__(self, world, width_px=640, height_px=None, grid=None):
@@ -34,7 +34,7 @@ class Map(Canvas):
         self.upper_left, (width, height) = np.array([low[0], high[1]]), (high - low) * self.px_per_m
         super().__init__(width_px, height_px or height + 2 * RIM_PX)
         self.shift = np.array([self.width - width, self.height - height]) / 2
-        self.marks, self.named = np.empty((0, 2)), None  # what names keep away from [m], and where they are
+        self.marks, self.named = np.empty((0, 2)), None  # what names keep away from [m]; the names once settled
         self.letters = []  # of columns and rows: middle [px] and words
         self._floor()
         self._things()
@@ -53,9 +53,9 @@ class Map(Canvas):
 
     def sight(self, pose, colour=ROBOT, farthest_m=9.0):
         """What a robot at `pose` can see: its field of view as far as the walls."""
-        near = cast(self.world, np.array([pose]), 256).dense()[0][0]  # of each crossing; the last is mostly a wall
+        near = cast(self.world, np.array([pose]), 256).dense()[0][0]  # of each crossing; the last is usually a wall
         near = np.where(near < np.inf, near, -1).max(1, initial=-1)
-        reach = np.where(near < 0, np.inf, near).clip(0, farthest_m)  # what crosses nothing goes on
+        reach = np.where(near < 0, np.inf, near).clip(0, farthest_m)  # a ray that crosses nothing goes on
         rim = pose[:2] + reach[:, None] * _ahead(pose[2] + np.arctan(slopes(256)))
         self.polygon(self.at([pose[:2], *rim]), (*colour, 30), (*colour, 130))
 
@@ -76,7 +76,7 @@ class Map(Canvas):
             self.disc(point, 3, colour, PAPER)
 
     def particles(self, particles, n=600, colour=BELIEF):
-        """n of the particles (x, y, theta, weight), each as often as it weighs: dots, with a hair ahead."""
+        """n dots, each particle (x, y, theta, weight) in proportion to its weight, with a hair that points ahead."""
         x, y, theta, weight = particles
         total = np.cumsum(weight, dtype=float)
         chosen = np.searchsorted(total, (np.arange(n) + 0.5) / n * total[-1])
@@ -86,9 +86,9 @@ class Map(Canvas):
             self.disc(dot, 1.5, (*colour, 80))
 
     def belief(self, pooled, colour=BELIEF):
-        """Belief in each place (K,): a rose in each cell, its petals the bearings, dark where belief is."""
+        """Belief in each place (K,): a rose in each cell, its petals the bearings, the darker the more belief."""
         for place in np.flatnonzero(pooled > 0.002):
-            self.polygon(self.petal(place), (*PAPER, 170))  # on dark things, too, one shall see it
+            self.polygon(self.petal(place), (*PAPER, 170))  # so that it shows on dark things, too
             self.polygon(self.petal(place), (*colour, int(30 + 210 * pooled[place] ** 0.5)), (*INK, 200))
 
     def place(self, place, colour):
@@ -96,7 +96,7 @@ class Map(Canvas):
         low = self.grid.corner_of(place)[:2]
         (x0, y1), (x1, y0) = self.at(low), self.at(low + self.grid.cell_m)
         corners = low + self.grid.cell_m * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-        self._mark(np.linspace(corners, np.roll(corners, 1, 0), 9).reshape(-1, 2))  # the frame, side by side
+        self._mark(np.linspace(corners, np.roll(corners, 1, 0), 9).reshape(-1, 2))  # the frame, side after side
         self.box(x0, y0, x1, y1, None, colour, 3)
         self.polygon(self.petal(place), (*colour, 80), colour, 1.5)
 
@@ -109,7 +109,7 @@ class Map(Canvas):
 
     @property
     def pale(self):
-        """Which boxes of the world are drawn pale, for they are not in the way: (N,) bool."""
+        """Which boxes of the world are drawn pale because they are not in the way: (N,) bool."""
         w = self.world
         return (w.label != WALL) & ((w.z[:, 0] >= ROBOT_HEIGHT_M) | (w.z[:, 1] <= STEP_M))
 
@@ -147,18 +147,18 @@ class Map(Canvas):
                 self.polygon(self._outline(i), colour_of(w.label[i], 70 if pale[i] else 255),
                              colour_of(w.label[i]) if hangs[i] else (*INK, 90))  # what hangs has a strong outline
         walls = np.flatnonzero((w.label == WALL) & (w.z[:, 0] <= 0))  # and not the wall above a door
-        for colour, less_px in ((QUIET, 0), (colour_of(WALL), 1)):  # all rims first: they end where walls meet
+        for colour, less_px in ((QUIET, 0), (colour_of(WALL), 1)):  # all rims first: no rim is left where walls meet
             for i in walls:
                 self.polygon(self._outline(i, less_px), colour)
 
     def _outline(self, i, less_px=0):
-        """Corners [px] of a box of the world, somewhat smaller if it should be."""
+        """Corners [px] of a box of the world, drawn in by `less_px` on each side."""
         half, angle = (self.world.half[i] - less_px / self.px_per_m).clip(0), self.world.angle[i]
         ahead, left = _ahead(angle) * half[0], _ahead(angle + np.pi / 2) * half[1]
         return self.at(self.world.centre[i] + np.array([ahead + left, left - ahead, -ahead - left, ahead - left]))
 
     def _spots_of_names(self):
-        """Middle [px], name and size of letters of each room, where no other name is and few things or marks are."""
+        """Middle [px], name and size of letters of each room, clear of other names and away from things and marks."""
         w, named, marks = self.world, [], cKDTree(self.marks)
         taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
         for room in w.plan.get("rooms", []):
@@ -175,7 +175,7 @@ class Map(Canvas):
                 beyond = box_distance(along, *footprints(parts)).min(1).reshape(-1, 7).max(1)
                 best = (free - 2 * beyond - 0.05 * np.hypot(*(spots - middle).T)).argmax()
                 if not beyond[best]:
-                    break  # it does not reach over a wall
+                    break  # the name stays within its room
             if len(spots):
                 taken = np.append(taken, [[spots[best], size]], 0)
                 named.append((self.at(spots[best]), name, px))

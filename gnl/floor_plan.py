@@ -49,7 +49,7 @@ def load(path):
 
 
 def _once(pairs):
-    """A dict of pairs whose keys are all different, or ValueError: of two equal ones JSON would keep the last."""
+    """A dict of pairs whose keys are all different, or ValueError: of two equal keys `json` would keep the last."""
     found = {}
     for name, value in pairs:
         if name in found:
@@ -59,7 +59,7 @@ def _once(pairs):
 
 
 def save(plan, path):
-    """Write `plan` as JSON, one wall, door, room and object a line."""
+    """Write `plan` as JSON, one wall, door, room or object per line."""
     def rows(value):
         if not (isinstance(value, list) and value):
             return json.dumps(value)

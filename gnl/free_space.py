@@ -1,4 +1,4 @@
-"""Where a home is inside, and where in it a robot has room: rasters of 5 cm.
+"""What is inside a home, and where in it a robot has room: rasters of 5 cm.
 
     inside      what a ball 1.2 m across cannot roll into from beyond the walls, all doors shut
     clearance   metres from each raster cell to the nearest obstacle
@@ -8,7 +8,7 @@ import numpy as np
 from scipy import ndimage
 
 RASTER_M = 0.05
-GATE_M = 0.6  # radius of the ball: an open front door is narrower
+GATE_M = 0.6  # radius of the ball, which is wider than an open front door
 MARGIN_M = 2.0
 
 
@@ -44,7 +44,7 @@ class FreeSpace:
         return regions == 1 + sizes[1:].argmax()
 
     def look_up(self, raster, xy):
-        """Whether a raster of bool holds at each point: (n, 2) -> (n,) bool; beyond its rim it does not."""
+        """Value of a raster of bool at each point: (n, 2) -> (n,) bool; False beyond its rim."""
         cell = np.floor((np.asarray(xy, float) - self.origin) / RASTER_M).astype(int)
         known = ((cell >= 0) & (cell < self.shape)).all(-1)
         ix, iy = np.where(known[..., None], cell, 0).T

@@ -1,4 +1,4 @@
-"""The gap between poses where one learns and poses where one is tested (section III, "cross-view").
+"""The gap between training poses and test poses (section III, "cross-view").
 
     T_xy [m], T_theta [rad]   the gap     poses (n, 3), tests (m, 3): x [m], y [m], theta [rad]
 """
@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from .places import wrap_angle
 
-DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must do, or there is no room to learn in
+DRAWN_AT_ONCE, FEWEST = 200_000, 1e-5  # poses; share of them that must qualify, or there is no room to learn in
 
 
 def beyond_gap(poses, tests, t_xy_m, t_theta_rad):
@@ -24,7 +24,7 @@ def poses_beyond(world, tests, t_xy_m, t_theta_rad, n, rng, gap=beyond_gap):
 
     gap : a function like `beyond_gap`, which says which poses are beyond it
 
-    ValueError if too few of the poses drawn are, with their share
+    ValueError, with their share, if too few of the poses drawn are beyond it
     """
     poses, drawn = np.empty((0, 3)), 0
     while len(poses) < n:

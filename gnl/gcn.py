@@ -1,13 +1,13 @@
 """The graph convolution network: from a scene graph to scores of the places (section IV-B).
 
-Two graph convolutions, the mean over nodes, a linear map. (The paper takes its network from an earlier one of the
-group's; ours is after the group's code of 2021, with sums over neighbours normalised as in Kipf and Welling 2017.)
+Two graph convolutions, the mean over nodes, a linear map. (The paper takes its network from the group's earlier
+work; ours follows the group's code of 2021, but normalises sums over neighbours as in Kipf and Welling 2017.)
 
     H1 = ReLU(A_hat X W1 + b1)    X one-hot words, so X W1 is a lookup of rows of W1
     H2 = ReLU(A_hat H1 W2 + b2)   A_hat = D^-1/2 (A + I) D^-1/2
     g  = mean over nodes of H2,   scores = g W3 + b3
 
-    B graphs   N nodes of all graphs, one behind the other   F, G features   K places
+    B graphs   N nodes of all graphs, one after the other   F, G features   K places
 """
 
 import numpy as np
@@ -46,7 +46,7 @@ def normalise_adjacency(edges, n_nodes, dtype=np.float32):
 
 
 def graph_convolution_forward(node_features, adjacency, weight, bias):
-    """A_hat H W + b: each node mixes its neighbours' features, then all nodes are mapped alike.
+    """A_hat H W + b: each node mixes its own and its neighbours' features, then all nodes are mapped alike.
 
     node_features (N, F), adjacency (N, N), weight (F, G), bias (G,) -> (N, G); cache: A_hat H, A_hat, W
     """
@@ -64,7 +64,7 @@ def graph_convolution_backward(dout, cache):
 
 
 def mean_forward(node_features, starts):
-    """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes reads zero.
+    """Mean over the nodes of each graph: (N, F), starts (B + 1,) -> (B, F); a graph without nodes gives zero.
 
     cache : nodes of each graph (B,)
     """
@@ -113,7 +113,7 @@ def _check_edges(graphs):
 
 
 class GCN:
-    """Parameters and passes of the network; `n_words` and `hidden` as one likes."""
+    """Parameters and passes of the network; any `n_words` and `hidden` will do."""
 
     def __init__(self, n_places, rng=None, n_words=N_WORDS, hidden=HIDDEN, dtype=np.float32):
         rng = rng or np.random.default_rng(0)
@@ -168,7 +168,7 @@ class GCN:
 
     @classmethod
     def load(cls, path):
-        """The network of a file of `save`, and what made it."""
+        """The network in a file written by `save`, and what made it."""
         params, made_by = load_arrays(path)
         n_words, hidden = params["W1"].shape if np.ndim(params.get("W1")) == 2 else (1, 1)
         gcn = cls(np.size(params.get("b3")), n_words=n_words, hidden=hidden)

@@ -1,6 +1,6 @@
 """The groundwork of a table: what its cells share, and where each of them starts.
 
-Homes, start poses and the views that the net learns from are drawn by data_gen, a program of its own; the net and a
+Homes, start poses and the views that the net learns from are drawn by data_gen, a separate program; the net and a
 place classifier for each home learn here. All is kept in the table's folder.
 """
 
@@ -19,13 +19,13 @@ from .world import World
 
 
 def prepare(out, settings, cells, n_processes, pool):
-    """What the cells share: homes and starts, drawn by a program of their own, the net, a GCN for each world.
+    """What the cells share: homes and starts, drawn by a separate program, the net, a GCN for each world.
 
     Yields (world, Senses) as soon as the world's GCN is learned.
     """
     worlds = sorted({cell.world for cell in cells})
     homes = {world: out / "data" / f"home-{world}.json" for world in worlds}
-    # If just these are there, made by this very code, data_gen leaves them; so with the views.
+    # data_gen leaves files alone that hold just these, made by this very code; the same goes for the views.
     names = [part for cell in cells for part in ("--cell", cell.world, cell.t_xy_m, cell.t_theta_deg, cell.seed)]
     _draw("starts", out / "data", *names, "--training", settings.episodes, "--tests", settings.tests,
           "--validation", settings.validation, "--jobs", n_processes)
@@ -57,7 +57,7 @@ def starts_path(out, cell):
 
 
 def load_starts(out, cell, settings):
-    """A cell's start poses; ValueError if they are not as many as the settings say."""
+    """A cell's start poses; ValueError if there are more or fewer than the settings say."""
     starts, _ = load_arrays(path := starts_path(out, cell))
     wanted = {"training": (settings.episodes, 3), "tests": (settings.tests, 3), "validation": (settings.validation, 3)}
     found = {name: poses.shape for name, poses in starts.items()}
@@ -69,7 +69,7 @@ def load_starts(out, cell, settings):
 
 
 def check_settings(path, there, settings):
-    """ValueError with the name of a setting that is another one in a file of results."""
+    """ValueError that names a setting which differs in a file of results."""
     for name, value in settings.items():
         if there.get(name) != value:
             raise ValueError(f"{path}: expected results of {name} {value}, found some of {there.get(name)!r}; "
@@ -85,7 +85,7 @@ def _load_home(path, seed):
 
 
 def _draw(*words):
-    """Let data_gen draw something, as a program of its own."""
+    """Let data_gen draw something, as a separate program."""
     status = subprocess.run([sys.executable, "-m", "data_gen", *map(str, words)]).returncode
     if status:
         sys.exit(status)  # it has said why

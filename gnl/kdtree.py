@@ -2,8 +2,8 @@
 
 Nearest-neighbour Q-learning asks of every view: which of my memories are most like this? A KD-tree answers
 without looking at all of them. It cuts space in two, each half again, and so on, and never opens a box that
-lies farther away than what it has found already. In 2-D that skips nearly everything. In 300-D the boxes of points
-that are spread out are far from nothing. Rankings of views are kinder, but a box costs as much to measure as a point,
+lies farther away than what it has found already. In 2-D that skips nearly everything. In 300-D, if points are
+spread out, no box is far from a query. Rankings of views are kinder, but a box costs as much to measure as a point,
 and one matrix product with all points is faster; `RankIndex` shows what it takes to do better there.
 
 symbol     shape      meaning
@@ -11,7 +11,7 @@ points     (n, dim)   all stored vectors in order of birth, float32; a point's i
 queries    (B, dim)   vectors whose neighbours are wanted
 low, high  (dim,)     corners of the smallest box around the points of a node
 k          int        neighbours wanted
-n_first    int        look at the first n_first points only: the store as it was when it held so many
+n_first    int        look at the first n_first points only: the store as it was when it held that many
 """
 
 from heapq import heappop, heappush
@@ -21,7 +21,7 @@ import numpy as np
 
 from .checks import check_count
 
-LEAF_SIZE = 32  # points; to look at so few at once costs hardly more than to choose between two boxes
+LEAF_SIZE = 32  # points; to look at this few at once costs hardly more than to choose between two boxes
 
 
 class KDTree:
@@ -42,7 +42,7 @@ class KDTree:
         return self._points[:self._n].copy()
 
     def add(self, points):
-        """Store points (n, dim); returns their ids (n,), counted on from the points already there."""
+        """Store points (n, dim); returns their ids (n,), continuing those of the points already there."""
         points = check_points(points, self._points.shape[1])
         ids = np.arange(self._n, self._n + len(points))
         self._n += len(points)
@@ -65,7 +65,7 @@ class KDTree:
         return ids
 
     def find(self, points):
-        """The oldest stored point that equals each of points (B, dim), or -1: (B,). The way down leads to its leaf."""
+        """The oldest stored point that equals each of points (B, dim), or -1: (B,). Only one leaf can hold it."""
         points, found = check_points(points, self._points.shape[1]), []
         for point in points:
             node = self._root
@@ -136,7 +136,7 @@ class _Node:
         return lengths((query.clip(self.low, self.high) - query)[None])[0]
 
     def split(self, points):
-        """Cut a leaf across its widest side at the median; returns its ids, which are the children's now.
+        """Cut a leaf across its widest side at the median; returns its ids, which now belong to the children.
 
         The cut is the greatest value below the median, or the least of all if none is below: no half is ever empty.
         """
@@ -149,7 +149,7 @@ class _Node:
         return ids
 
 
-# What all indexes do alike.
+# Shared by all indexes.
 
 def lengths(differences):
     """Euclidean lengths of the rows of (n, dim) -> (n,)."""

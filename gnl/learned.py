@@ -1,7 +1,7 @@
 """Learned parts, each kept in a file: learned when it is not there yet, loaded when it is.
 
 A file's name carries a digest of the settings that went into it (seed, floor plan, training views) and of the code of
-the stages, so others make another file and never a wrong answer.
+the stages, so other settings or code make another file, and never a wrong answer.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ from .robot import Robot, check_actions
 from .scene_graph import join
 from .senses import Senses
 
-# Whoever changes one of these modules learns anew.
+# A change in any of these modules means that all is learned anew.
 STAGES = ("camera", "checkpoints", "checks", "classes", "episode", "floor_plan", "free_space", "gcn", "kdtree",
           "learned", "nn", "nnql", "particles", "photo", "places", "planners", "polygons", "rank_index", "ranks",
           "robot", "scene_graph", "segnet", "senses", "strip", "world")
@@ -65,7 +65,7 @@ def kept(folder, name, settings, load, learn):
 
 
 def load_views(path):
-    """Training views (rgb, labels) of a file of `python -m data_gen views`, and what made them."""
+    """Training views (rgb, labels) in a file made by `python -m data_gen views`, and what made them."""
     arrays, made_by = load_arrays(path)
     if not isinstance(made_by, dict) or not isinstance(made_by.get("homes", 0), int):
         raise ValueError(f"{path}: expected views of `python -m data_gen views`, found some made by {made_by}")
@@ -83,7 +83,7 @@ def load_views(path):
 def segmentation_net(folder, views, views_made_by, epochs, seed, stage):
     """Weights of the net trained on `views` (rgb, labels)."""
     settings = {"views": views_made_by, "epochs": epochs, "seed": seed,
-                "start": fingerprint(segnet.new_params(np.random.default_rng(seed)))}  # tells a net of other layers
+                "start": fingerprint(segnet.new_params(np.random.default_rng(seed)))}  # other layers, another file
 
     def learn(path):
         rng = np.random.default_rng(seed)
@@ -113,7 +113,7 @@ def place_classifier(folder, senses, grid, n_views, seed, settings, helper, stag
 def place_classifiers(folder, senses, n_views, seed, settings, pool, **how):
     """The same for several worlds, each in a process of the executor `pool`: dict of Senses -> (world, GCN) one by one.
 
-    Whoever asks for the next one waits until it is learned; the pool can have other work by then.
+    To ask for the next one is to wait until it is learned; in between, the pool can be given other work.
     """
     settings_of = {world: {**settings, "plan": digest(of_world.world.plan), "views": n_views, "seed": seed, **how}
                    for world, of_world in senses.items()}
@@ -196,7 +196,7 @@ def fixed_scan(folder, senses, grid, n_starts, seed, settings, helper):
 
 
 def best_sequence(senses, grid, n_starts, seed):
-    """The winner of a race from random starts, other ones than the classifier learned from with the same seed."""
+    """The winner of a race from random starts, not those that the classifier learned from under the same seed."""
     starts = senses.world.free_poses(n_starts, np.random.default_rng([seed, 2]))
     return episode.race(senses, Robot(senses.world), grid, starts, seed)[0][0]
 

@@ -1,7 +1,7 @@
 """Layers as pairs of pure functions, the loss, Adam, and the check that every gradient must pass.
 
     forward(x, ...) -> out, cache        cache: the tuple that backward needs, never written into
-    backward(dout, cache) -> dx, ...     d<name> is the gradient of the loss by <name>, of the same shape
+    backward(dout, cache) -> dx, ...     d<name>: gradient of the loss with respect to <name>, same shape
 
     B batch   H x W image, row 0 on top   C channels in   F channels out   K classes
 """
@@ -25,7 +25,7 @@ def conv_forward(x, w, b):
     s0, s1, s2, s3 = padded.strides
     rows = np.ndarray((B, H, W, 3), f"V{3 * C * s3}", padded, strides=(s0, s1, s2, s1))
     patches = rows.copy().view(x.dtype).reshape(B, H * W, 9 * C)
-    out = patches @ w.reshape(9 * C, -1)  # a product for each image: a small one stays near the processor
+    out = patches @ w.reshape(9 * C, -1)  # a product for each image: a small one fits in the cache
     out += b
     return out.reshape(B, H, W, w.shape[3]), (patches.reshape(B * H * W, 9 * C), w)
 
@@ -127,7 +127,7 @@ def softmax_cross_entropy(scores, labels, axis=-1):
 
 
 class Adam:
-    """Adam (Kingma and Ba 2015, in the form at the end of their section 2): running means of gradients and squares.
+    """Adam (Kingma and Ba 2015, in the form at the end of section 2): running means of gradients and their squares.
 
         m <- beta1 m + (1 - beta1) g,   v <- beta2 v + (1 - beta2) g^2
         p <- p - rate sqrt(1 - beta2^t) / (1 - beta1^t) m / (sqrt(v) + eps)
@@ -142,7 +142,7 @@ class Adam:
         """Move `params` in place against `grads`, a dict of the same names, at `rate` if given."""
         self.t += 1
         rate = (self.rate if rate is None else rate) * math.sqrt(1 - self.beta2 ** self.t) / (1 - self.beta1 ** self.t)
-        rate = float(rate)  # a float of NumPy would have the product below computed in 64 bits
+        rate = float(rate)  # a NumPy float64 would have the product below computed in 64 bits
         for name, g in grads.items():
             m, v = self.m[name], self.v[name]
             m *= self.beta1
@@ -173,4 +173,4 @@ def gradient_error(f, x, dx, rng, probes=20, eps=1e-6):
         x.flat[i] = kept
         numeric, analytic = (up - down) / (2 * eps), dx.flat[i]
         errors.append(abs(numeric - analytic) / max(1e-6, abs(numeric) + abs(analytic)))
-    return np.max(errors)  # of which NaN is the greatest
+    return np.max(errors)  # NaN if any is, unlike Python's max

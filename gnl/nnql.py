@@ -8,10 +8,10 @@ each with a value of its own. Any other pair has the mean value of its neighbour
 
     N(s, a)   the k stored pairs *of the same action* a whose states are nearest to s; if (s, a) itself is
               stored, it alone; nothing if a was never tried
-    (s', a')  in the paper two things by one name: in (1) a neighbour, where we take a' to be a; in (2) s' is the
-              state that came after s, and a' any action that could be done there; after the last step nothing is
+    (s', a')  in the paper two things under one name: in (1) a neighbour, where we take a' to be a; in (2) s' is the
+              state that came after s, and a' any action that could be done there; the last step has none
 
-    B states side by side   K numbers a state   A actions   n pairs of one action, in order of birth
+    B states side by side   K numbers in a state   A actions   n pairs of one action, in order of birth
     k neighbours            r reward            alpha learning rate            gamma discount
 """
 
@@ -51,7 +51,7 @@ class Neighbours:
     def find(cls, index, states, k, n_first):
         """Of states (B, K) among the first n_first pairs of an index; a later pair is not available (N/A)."""
         distance, pair = np.full((len(states), k), np.inf), np.full((len(states), k), -1)
-        itself = index.find(states)  # much cheaper than its neighbours
+        itself = index.find(states)  # much cheaper than to search for neighbours
         met = (itself >= 0) & (itself < n_first)
         distance[met, 0], pair[met, 0] = 0, itself[met]
         if not met.all():
@@ -61,7 +61,7 @@ class Neighbours:
     def joined_by(self, states, newborn, ids):
         """The same after pairs of the states `newborn` (m, K) were stored with the numbers ids (m,)."""
         k, S, born = self.pair.shape[1], states.astype(float), newborn.astype(float)
-        # Few of the newborn are near. Which ones, |s|^2 + |b|^2 - 2 s.b tells but for rounding; the rest can stay inf.
+        # Few of the newborn are near: |s|^2 + |b|^2 - 2 s.b shows which, up to rounding; the rest can stay inf.
         size = (S ** 2).sum(1)[:, None]
         roughly = size + (born ** 2).sum(1) - 2 * S @ born.T
         near = (roughly <= self.distance[:, -1:] ** 2 + 1e-6 * size) & (self.itself < 0)[:, None]
@@ -91,10 +91,10 @@ class Neighbours:
 
 
 class NNQL:
-    """The store: an index of states and an array of values for each action; and its past.
+    """The store: an index of states and an array of values for each action; its past as checkpoints.
 
-    `index` makes an empty nearest-neighbour index for states of state_size numbers (rank_index.py, kdtree.py): what has
-    add, find, query and points as a KDTree has them.
+    `index` makes an empty nearest-neighbour index for states of state_size numbers (rank_index.py, kdtree.py): anything
+    with add, find, query and points like a KDTree's.
     """
 
     def __init__(self, state_size, n_actions, k=K_NEIGHBOURS, alpha=ALPHA, gamma=GAMMA, index=RankIndex):
@@ -106,7 +106,7 @@ class NNQL:
         self.index = [index(state_size) for _ in range(n_actions)]
         self.values = [np.empty(0) for _ in range(n_actions)]
         self.checkpoints = Checkpoints(n_actions)
-        self._states, self._found = None, []  # what was looked up last, and of each action its Neighbours
+        self._states, self._found = None, []  # what was looked up last, and its Neighbours for each action
 
     def q_values(self, states):
         """Equation 1: states (B, K) -> (B, A). An action that was never tried has value 0."""
@@ -115,7 +115,7 @@ class NNQL:
     def learn(self, states, actions, rewards, next_states, done):
         """Equation 2 for B transitions; states, next_states (B, K), actions (B,), rewards (B,).
 
-        done : (B,) bool, nothing comes after
+        done : (B,) bool, whether nothing comes after
         """
         # DIFFERS: robots side by side learn together: all targets come from the Q before this step, and a pair that
         # several met is changed by one after the other.
@@ -146,7 +146,7 @@ class NNQL:
             if pair[i] >= 0:
                 values[pair[i]] += self.alpha * (target[i] - values[pair[i]])
             else:
-                value = born.get(state.tobytes(), first_value(q[i]))  # the second robot to meet it finds it there
+                value = born.get(state.tobytes(), first_value(q[i]))  # a second robot in this state goes on from there
                 born[state.tobytes()] = value + self.alpha * (target[i] - value)
         if born:
             newborn = np.stack([np.frombuffer(key, states.dtype) for key in born])
@@ -156,7 +156,7 @@ class NNQL:
                 self._found[a] = self._found[a].joined_by(self._states, newborn, ids)
 
     def _neighbours(self, states):
-        """Of each action the Neighbours of the states.
+        """The Neighbours of the states, for each action.
 
         Learning looks up the next states; planning then asks for the same ones, and so does the next step of
         learning. So the last answer is kept, and pairs that are born join it.
@@ -168,11 +168,11 @@ class NNQL:
         return self._found
 
     def checkpoint(self):
-        """Remember today's Q."""
+        """Remember Q as it is now."""
         self.checkpoints.add(self.values)
 
     def at(self, checkpoint):
-        """Q as it was at a checkpoint (0, 1, ...), to ask and not to teach; shares the states with this store."""
+        """Q as it was at a checkpoint (0, 1, ...), read-only; shares the states with this store."""
         return PastQ(self.index, self.checkpoints.values_at(checkpoint), self.k)
 
     def save(self, path, made_by):
@@ -183,7 +183,7 @@ class NNQL:
 
     @classmethod
     def load(cls, path, **settings):
-        """The store of a file of `save`, and what made it; k, alpha, gamma and index are not in the file."""
+        """The store in a file written by `save`, and what made it; k, alpha, gamma and index are not in the file."""
         arrays, made_by = load_arrays(path)
         kinds = ("states", "values", *Checkpoints.NAMES)
         n_actions = len(arrays) // len(kinds)
@@ -208,7 +208,7 @@ class NNQL:
 
 @dataclass(frozen=True)
 class PastQ:
-    """Q at a checkpoint: of each action the values of the pairs there were, and the index, which has later ones too."""
+    """Q at a checkpoint: for each action the values of the pairs it had, and the index, which has later ones too."""
 
     index: list
     values: list
@@ -221,7 +221,7 @@ class PastQ:
 
 
 def _find(store, states):
-    """Of each action the Neighbours of the states, among as many pairs as the store has values."""
+    """The Neighbours of the states for each action, among its first pairs: as many as the store has values."""
     return [Neighbours.find(index, states, store.k, len(v)) for index, v in zip(store.index, store.values, strict=True)]
 
 

@@ -2,8 +2,8 @@
 
 NNQL chooses anew after every look, from the latest view alone. It cannot know what it did last and often undoes it.
 An option (Sutton, Precup and Singh 1999) never does: it is one action, done again and again. What options are worth is
-learned from the very steps that NNQL lived through, by the mean of neighbours, as there, and from the race of the
-fixed sequences, of which the options are three:
+learned from the very steps that NNQL lived through, by a mean over neighbours, as there, and from the race of the
+fixed sequences, three of which are the options:
 
     V_d(s, a) = mean over the k nearest (s', a) of [ r / L + V_{d-1}(s'', a) ],     V_0 = 0
     Q(s, a)   = V_L(s, a) - mean of V_L(., a) over first views + worth of a in the race
@@ -23,7 +23,7 @@ from .robot import N_ACTIONS
 K_NEIGHBOURS = 100
 MOST_STEPS = 20_000  # twice as many take four times as long
 FIRST_VIEWS = 2000  # over which a mean is taken
-AT_ONCE = 64  # queries whose likeness to all that is remembered is held in memory
+AT_ONCE = 64  # queries whose dot products with all that is remembered are held in memory
 
 
 class Experience:
@@ -42,7 +42,7 @@ class Experience:
             self.rewards.append(states[np.arange(len(states)), places])  # a state holds 1 / rank of every place
 
     def arrays(self):
-        """Steps (1 after the first view), states before, actions, states after, rewards; of one look or more."""
+        """Steps (1 after the first view), states before, actions, states after, rewards; ValueError if none."""
         if not self.steps:
             raise ValueError("experience: expected at least one step, found none")
         return (np.concatenate(part) for part in (self.steps, self.before, self.actions, self.after, self.rewards))
@@ -51,7 +51,7 @@ class Experience:
 class Options:
     """What going on with each action is worth, from an Experience and a race.
 
-    sequences, worth : fixed sequences of actions (n, L), all of one action among them, and what they were worth (n,)
+    sequences, worth : fixed sequences of actions (n, L), each action repeated among them, and what they were worth (n,)
     """
 
     def __init__(self, experience, sequences, worth, k=K_NEIGHBOURS):
@@ -75,14 +75,14 @@ class Options:
                          for before, ahead in zip(self.before, self.ahead, strict=True)], 1)
 
     def q_values(self, states):
-        """Worth of each action in the race, and how much more than on average lies ahead here: (B, K) -> (B, A)."""
+        """Worth of each action in the race, plus how much more than on average lies ahead here: (B, K) -> (B, A)."""
         return self.values(states) + self.offset
 
 
 def nearest(states, remembered, k):
     """The k nearest of `remembered` (n, K) to each state (B, K), or all if they are fewer: (B, min(k, n)), unordered.
 
-    All states have one length, so the nearest have the greatest dot product.
+    All states have the same length, so the nearest have the greatest dot product.
     """
     n, k = len(remembered), min(k, len(remembered))
     found = np.empty((len(states), k), np.int32)

@@ -1,6 +1,6 @@
-"""Other memories than that of nnql.py, for choices.py: each is one way to read equations 1 and 2.
+"""Alternatives to the store of nnql.py, for choices.py: each is one way to read equations 1 and 2.
 
-    B states side by side   K numbers a state   n pairs stored   k neighbours   A actions
+    B states side by side   K numbers in a state   n pairs stored   k neighbours   A actions
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ from .nnql import NNQL, SAME
 
 
 class Endless(NNQL):
-    """Equation 2 as it is written, to the last step: what comes after it is worth what Q says."""
+    """Equation 2 as it is written, even at the last step: what comes after that is worth what Q says."""
 
     def learn(self, states, actions, rewards, next_states, done):
         super().learn(states, actions, rewards, next_states, np.zeros_like(done))
@@ -33,13 +33,13 @@ class OfAnyAction(NNQL):
 
 
 class Shrunk(NNQL):
-    """The mean of the neighbours is drawn towards that of all pairs of the same context and action.
+    """The mean of the neighbours is shrunk towards that of all pairs of the same context and action.
 
         Q(s, a) <- [k Q(s, a) + pull Q(c, a)] / (k + pull)     c   how many actions were done, and the last one
 
     The last number of a state is its context (choices.with_context); a pair has that in which it was met last. Q(c, a)
-    is 0 where nothing was met; a pair that is born starts at the mean of its neighbours as it is. For one run: what is
-    saved, or asked of a checkpoint, knows no contexts.
+    is 0 where nothing was met; a new pair starts at the plain mean of its neighbours. For one run only: what is saved,
+    or asked of a checkpoint, knows no contexts.
     """
 
     def __init__(self, n_places, n_actions, pull):
@@ -67,8 +67,8 @@ class Shrunk(NNQL):
 class BruteForce:
     """Nearest neighbours for any vectors, all distances at once: an index for a few thousand of them.
 
-    Exact but where rounding cannot tell two neighbours apart. In 64 bits: in 32, rounding alone would part a state from
-    itself by more than nnql.SAME.
+    Exact but where rounding cannot tell two neighbours apart. In 64 bits: in 32, rounding alone would put a state
+    farther from itself than nnql.SAME.
     """
 
     def __init__(self, dim):
@@ -88,7 +88,7 @@ class BruteForce:
         points, there = points.astype(float), self.points[:n_first]
         squares = (points ** 2).sum(1)[:, None] + (there ** 2).sum(1) - 2 * points @ there.T
         order = np.argsort(squares.clip(0), 1, kind="stable")[:, :k]
-        # Of large numbers the squares alone would part a point from itself.
+        # With large numbers the squares alone would put a point at a distance from itself.
         distances = np.linalg.norm(there[order] - points[:, None], axis=2)
         lacking = ((0, 0), (0, k - order.shape[1]))
         return np.pad(distances, lacking, constant_values=np.inf), np.pad(order, lacking, constant_values=-1)

@@ -1,6 +1,6 @@
 """What cells found, as their files hold it, and what can be asked of it: who was right, after which look, how often.
 
-An outcome is a dict {"place": looks, "location": looks}; looks are T strings, one character an episode, 1 where the
+An outcome is a dict {"place": looks, "location": looks}; looks are T strings, one character per episode, 1 where the
 answer was right. The result of a cell holds an outcome of each method and of each checkpoint (experiment.py).
 
     n episodes of a cell   T looks each   C cells
@@ -12,7 +12,7 @@ import numpy as np
 def outcome_of(grid, record, n_looks=0):
     """The outcome of a Record: right or wrong after each look, the place and the location alone.
 
-    n_looks : robots that took fewer keep to their last answer, for so many looks
+    n_looks : if robots took fewer looks, their last answer is repeated up to this many
     """
     where = grid.location_of(record.answers) == grid.location_of(record.places)
     more = (0, 0), (0, max(0, n_looks - where.shape[1]))
@@ -34,7 +34,7 @@ def from_strings(looks):
 
 
 def answers(outcome, what="place", look=-1):
-    """Whether the answers after one look were right, the last if no other is named: (n,) bool.
+    """Whether the answers after one look, by default the last, were right: (n,) bool.
 
     what : "place", or "location" for the place without its bearing
     """
@@ -56,7 +56,7 @@ def from_training(result):
 
 
 def gains(results, a, b, of=right):
-    """Share of right answers of method a less that of b, cell by cell: a list."""
+    """Share of right answers of method a minus that of b, cell by cell: a list."""
     by_method = [of(result) for result in results]
     return [one[a].mean() - one[b].mean() for one in by_method]
 
@@ -75,7 +75,7 @@ def adapted(result):
 
 
 def best_checkpoint(past):
-    """Index of the one with the most right answers, of equal ones the latest; `past` has an outcome of each."""
+    """Index of the one with the most right answers, of equal ones the latest; `past` holds an outcome for each."""
     return latest_best([answers(outcome).mean() for outcome in past])
 
 
@@ -101,7 +101,7 @@ def by_gap(results, a, b):
 
 
 def groups(results, *keys):
-    """All results, and those of each value of each key: (words, results). A key comes with words for its values."""
+    """All results, and those of each value of each key: (words, results). A key comes with a format for its values."""
     yield "all", results
     for key, words in keys:
         for value in sorted({result["cell"][key] for result in results}):

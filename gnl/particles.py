@@ -18,14 +18,14 @@ N_PARTICLES = 5000
 N_START_PLACES = 3
 STD = 0.03, 0.03  # CHOICE: 3 cm and 0.03 rad, as the odometry; the paper names no motion noise
 FLOOR = 1e-3  # CHOICE: 1e-3 for a place that the classifier rules out
-AT_ONCE = 8  # filters: one call of NumPy for all, and their particles stay near the processor
+AT_ONCE = 8  # filters: one NumPy call for all, and their particles fit in the cache
 
 
 class ParticleFilter:
     """B beliefs over the poses of a home, one for each of B robots side by side.
 
     The filters share the offsets of their start and the noise of their motion: within a filter particles are
-    independent, and that is all it needs. They know no walls; one beyond the grid counts for the nearest cell.
+    independent, and that is all it needs. Particles know no walls; beyond the grid, the nearest cell counts.
     """
 
     def __init__(self, grid, likelihood, rng, n_particles=N_PARTICLES, n_start_places=N_START_PLACES, std=STD):
@@ -67,7 +67,7 @@ class ParticleFilter:
             self.theta[group] += turn + noise[2]
 
     def weigh(self, likelihood):
-        """Multiply each weight by the likelihood (B, K) of its particle's place; where all are zero, keep them.
+        """Multiply each weight by the likelihood (B, K) of its particle's place; where all would be zero, keep them.
 
         Likelihoods are held in 32 bits: let the greatest be somewhere around 1.
         """
@@ -88,8 +88,8 @@ class ParticleFilter:
     def belief(self, pooling="sum"):
         """Pool the particles to places: (B, K), the sum of their weights, or their greatest ("max").
 
-        Their places are those where they were weighed last; a belief about what comes next is pooled after `predict`
-        and a `weigh` by ones.
+        Their places are those of the last `weigh`; for the belief that `predict` alone leads to, `weigh` by ones
+        first.
         """
         if pooling not in ("sum", "max"):
             raise ValueError(f'pooling: expected "sum" or "max", found {pooling!r}')
@@ -102,9 +102,9 @@ class ParticleFilter:
         return pooled
 
     def resample(self):
-        """Draw M particles of equal weight: particle i gets floor or ceil of M weight_i copies, on average exactly.
+        """Draw M particles of equal weight: particle i gets floor or ceil of M weight_i copies, just that on average.
 
-        One uniform number u a filter; particle i is copied once for each u + n (n integer) between the sums of
+        One uniform number u per filter; particle i is copied once for each u + n (n integer) between the sums of
         M weight up to i - 1 and up to i.
         """
         B, M = self.weight.shape

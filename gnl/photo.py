@@ -6,7 +6,7 @@ the sensor change it further. One dial, `noise`, scales all that a clean drawing
     rgb = albedo * facing * exposure * distance * gradient * texture + sensor
 
     albedo    the object's own colour                      facing    of a face: brighter towards the light
-    exposure  of the view, and of each of its colours      distance  0.6 + 0.4 exp(-depth / 5 m)
+    exposure  of the view, and of each colour channel      distance  0.6 + 0.4 exp(-depth / 5 m)
     gradient  of the light across the view                 texture   1 + contrast * sin(waves on the surface)
     sensor    noise of each pixel and colour
 """
@@ -81,24 +81,24 @@ def photograph(world, poses, surfaces, size, height_m, rng, noise, wanted):
 
 
 def _luck(n_views, size, rng, noise):
-    """What chance gives to n views: exposure (n, 3), gradient across and down (n, 1, 1) each, grit (n, 3, H, H) int8.
+    """The random part of n views: exposure (n, 3), gradient across and down (n, 1, 1) each, grit (n, 3, H, H) int8.
 
-    Light and exposure are drawn before the pixels: as many views of another size have the same.
+    Light and exposure are drawn before the pixels: the same number of views in another size get the same.
     """
     n, pixels = n_views, n_views * size * size
     # Albedo is in 0..1, a pixel in 0..255.
     exposure = 255 * np.exp(noise * EXPOSURE_STD * rng.standard_normal((n, 1)))
     exposure = exposure * np.exp(noise * BALANCE_STD * rng.standard_normal((n, 3)))
     across, down = (noise * GRADIENT_STD * rng.standard_normal((2, n, 1, 1))).astype(np.float32)
-    grit = rng.integers(2 ** 64, size=(3, -(-pixels // 8)), dtype=np.uint64).view(np.int8)  # eight a draw
+    grit = rng.integers(2 ** 64, size=(3, -(-pixels // 8)), dtype=np.uint64).view(np.int8)  # eight per draw
     return exposure, across, down, grit[:, :pixels].reshape(3, n, size, size).swapaxes(0, 1)
 
 
 def _of_runs(world, poses, surfaces, exposure, size, height_m):
     """What the pixels of each run share, (9, R) float32.
 
-    rows : inverse depth straight on and its change upwards [1/m]; phase of the texture at the camera, its change per
-           metre of depth straight on and upwards; its contrast; colour in full light
+    rows : inverse depth straight ahead and its change upwards [1/m]; phase of the texture at the camera, its change per
+           metre of depth straight ahead and upwards; its contrast; colour in full light
     """
     N, C = len(world.label) + 2, size  # boxes with the ceiling, an underside, and the floor, a top
     of_run = np.empty((9, len(surfaces.run_ray)), np.float32)
@@ -107,7 +107,7 @@ def _of_runs(world, poses, surfaces, exposure, size, height_m):
     box, view = face // FACES, surfaces.run_ray // C
 
     near[:] = surfaces.w.take(surfaces.run_surface)
-    levels = np.full((N, FACES), np.inf)  # heights of what lies flat; a side is as near above as straight on
+    levels = np.full((N, FACES), np.inf)  # heights of flat faces; a side has one inverse depth in all rows
     levels[:-2, UNDERSIDE], levels[:-2, TOP] = world.z.T - height_m
     levels[-2, UNDERSIDE], levels[-1, TOP] = world.wall_height - height_m, -height_m
     levels[levels == 0] = np.inf  # seen edge on, so not at all
@@ -142,6 +142,6 @@ def _facing(world):
 
 
 def check_noise(noise, name="noise"):
-    """ValueError for an appearance noise that cannot be."""
+    """ValueError for an appearance noise out of range."""
     if not 0 <= noise <= MOST_NOISE:
         raise ValueError(f"{name}: expected 0..{MOST_NOISE:g}, found {noise}")

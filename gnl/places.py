@@ -12,7 +12,7 @@ from .checks import check_finite
 
 CELL_M = 2.0
 N_BEARINGS = 12
-ROUNDING = 1e-10  # m, rad; a pose so near to the next cell is in it: a multiple of 30 degrees may come out a bit less
+ROUNDING = 1e-10  # m, rad; a pose this near to the next cell is in it: a multiple of 30 degrees may come out a bit less
 
 
 class PlaceGrid:
@@ -64,5 +64,5 @@ def check_poses(poses):
 
 
 def wrap_angle(theta):
-    """Angle(s) in (-pi, pi], but for rounding."""
+    """Angle(s) in (-pi, pi], up to rounding."""
     return -((np.pi - np.asarray(theta)) % (2 * np.pi) - np.pi)

@@ -2,8 +2,8 @@
 
 A planner is a function plan(step, states, rng) -> actions (B,): states (B, K) are the reciprocal ranks of the
 latest views, unless the episode's rules say otherwise; `rng` is the exploration stream. A plan that returns None ends
-the episode of all robots. A planner that wants more, such as the particles, also hands a function to `episode.run` as
-`watch`, which is called before it.
+the episode of all robots. A planner that needs more, such as the particles, gets it from a function that
+is given to `episode.run` as `watch` and called before the plan.
 """
 
 import itertools
@@ -37,14 +37,14 @@ def scan(sequence):
 
 
 def greedy(nnql):
-    """The action of the greatest Q-value (Ours); among equal values one is drawn."""
+    """The action of the greatest Q-value (Ours); ties are broken at random."""
     def plan(_step, states, rng):
         return best_actions(nnql.q_values(states), rng)
     return plan
 
 
 def go_on(plan):
-    """What a planner chooses at the first view, again and again (of the greatest of options.py's values: Ours+)."""
+    """What a planner chooses at the first view, again and again (greedy by the values of options.py: Ours+)."""
     first = None
 
     def plan_once(step, states, rng):
@@ -56,7 +56,7 @@ def go_on(plan):
 
 
 def explore(nnql, epsilon):
-    """Greedy, but at random in a share epsilon (B,) of the cases: how NNQL gathers experience."""
+    """Greedy, but at random with probability epsilon (B,): how NNQL gathers experience."""
     def plan(_step, states, rng):
         q = nnql.q_values(states)
         best = best_actions(q, rng)
@@ -72,7 +72,7 @@ def best_actions(q, rng):
 
 
 def sequences(length):
-    """Every sequence of `length` actions that does not at once undo a turn: (n, length), n = 3, 7, 17, 41, ...
+    """Every sequence of `length` actions that never undoes a turn at once: (n, length), n = 3, 7, 17, 41, ...
 
     To turn back is to see again what one has just seen.
     """

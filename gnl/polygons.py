@@ -2,14 +2,14 @@
 
 import numpy as np
 
-WORTH_CUTTING = 0.9  # a concave polygon is cut where that shrinks its cover below this share
+WORTH_CUTTING = 0.9  # a concave polygon is cut if that shrinks its cover to less than this share
 
 
 def cover_polygon(polygon):
     """Rectangles that together cover `polygon`, as rows (x, y, half length, half width, angle).
 
-    A convex polygon gets its smallest rectangle. A concave one is cut along the line through one of its inner
-    corners, the best one, and its pieces likewise, if their rectangles are clearly smaller than the whole's.
+    A convex polygon gets its smallest rectangle. A concave one is cut from the best of its inner
+    corners, along a side that ends there, and its pieces likewise, if their rectangles are clearly smaller in all.
     """
     polygon = np.asarray(polygon, float)
     whole = smallest_rectangle(polygon)
@@ -50,7 +50,7 @@ def _cross(a, b):
 
 
 def inner_corners(polygon):
-    """Indices of the corners that turn against the polygon's sense of rotation."""
+    """Indices of the inner (reflex) corners: they turn against the polygon's orientation."""
     before, after = polygon - np.roll(polygon, 1, 0), np.roll(polygon, -1, 0) - polygon
     turning = _cross(before, after)
     around = _cross(polygon, np.roll(polygon, -1, 0)).sum()

@@ -1,7 +1,7 @@
 """Exact nearest neighbours among reciprocal-rank vectors; where there are many, faster than looking at every one.
 
 The state of nearest-neighbour Q-learning is a ranking of K places, written as 1/rank: every vector is a
-permutation of (1, 1/2, ..., 1/K). So all have one length, the nearest is the one with the greatest dot
+permutation of (1, 1/2, ..., 1/K). So all have the same length, the nearest is the one with the greatest dot
 product, and two are near only if their first places agree, or nearly so. The index keeps vectors on shelves,
 one for each first place, and looks only at those that can hold a neighbour (`most_beyond`). New vectors lie on
 a pile until there are enough to put on the shelves. A robot that faces one more bare wall ranks the places as
@@ -12,7 +12,7 @@ points     (n, K)    all stored vectors in order of birth, float32; a point's id
 rows       (m, K)    the different ones: shelf after shelf, each by age, then the pile by age
 queries    (B, K)    vectors whose neighbours are wanted
 k          int       neighbours wanted
-n_first    int       look at the first n_first points only: the store as it was when it held so many
+n_first    int       look at the first n_first points only: the store as it was when it held that many
 """
 
 from bisect import bisect_left
@@ -22,10 +22,10 @@ import numpy as np
 from .checks import check_count
 from .kdtree import as_points, check_points, lengths
 
-# Any choice gives the same answers.
-SMALL = 2000  # rows; up to so many stay on the pile, where it is fastest to look at every one
-PILE = 500  # rows; so many go to the shelves together
-DEEP = 8  # shelves; a query that is unsure after so many looks at every row
+# Whatever these are, the answers are the same.
+SMALL = 2000  # rows; up to this many stay on the pile, where it is fastest to look at every one
+PILE = 500  # rows; this many go to the shelves together
+DEEP = 8  # shelves; a query still unsure after these looks at every row
 
 
 class RankIndex:
@@ -54,7 +54,7 @@ class RankIndex:
         return self._rows[self._row_of]
 
     def add(self, points):
-        """Store points (n, K); returns their ids (n,), counted on from the points already there."""
+        """Store points (n, K); returns their ids (n,), continuing those of the points already there."""
         points = self._check_ranks(points)
         ids = np.arange(len(self), len(self) + len(points))
         for new, vector in zip(ids.tolist(), points, strict=True):
@@ -203,7 +203,7 @@ def most_beyond(n_places):
     Let s have its 1 where q has 1/r. By the rearrangement inequality q.s is greatest if all the rest pairs
     off in order: 1 with 1/2, 1/2 with 1/3, ..., 1/(r-1) with 1/r, and from there on 1/i with 1/i. So q.s is
     at most 1/r + sum_{i<r} 1/(i (i+1)) + sum_{i>r} 1/i^2 = 1 + sum_{i>r} 1/i^2, as the first sum telescopes
-    to 1 - 1/r. The less q has where s has its 1, the less they have in common. Beyond all K places is nothing.
+    to 1 - 1/r. The smaller q is where s has its 1, the smaller this bound. Beyond all K places there is nothing.
     """
     squares = 1 / np.arange(1, n_places + 1) ** 2
     return np.append(1 + squares.sum() - squares.cumsum(), -np.inf)

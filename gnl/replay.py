@@ -1,4 +1,4 @@
-"""A replay: one episode as an animated picture that one understands without being told.
+"""A replay: one episode as an animated picture that explains itself.
 
 On the left the home with the robot and its way (orange), the particles of its filter (violet) and the filter's
 answer: a cell and a bearing, green if right, red if wrong. On the right what the robot sees, what it makes of it,
@@ -23,7 +23,7 @@ from .places import wrap_angle
 from .robot import ACTIONS
 from .senses import Senses
 
-WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX, GAP_PX = 830, 566, (412, 412), 192, 10  # GitHub's pages are 830
+WIDTH_PX, HEIGHT_PX, MAP_PX, VIEW_PX, GAP_PX = 830, 566, (412, 412), 192, 10  # GitHub's pages are 830 wide
 KEY = {"robot": "robot", "sight": "its view", "particles": "particles", "right": "answer, right", "wrong": "or wrong"}
 LOOK_S, MOTION_S, LAST_S, N_MOTION = 1.6, 0.12, 3.2, 3
 DECIDE, DOING = ("turn left", "turn right", "go forward"), ("turning left", "turning right", "going forward")
@@ -49,7 +49,7 @@ class Look:
 
 @dataclass
 class Witness(Senses):
-    """Senses that remember what each stage made of the latest look, and the photograph in large."""
+    """Senses that remember what each stage made of the latest look, and a large version of the photograph."""
 
     latest: dict = field(default_factory=dict)
 
@@ -88,7 +88,7 @@ def frames(looks, world, grid):
     for look in looks:
         whole.place(look.answer, RIGHT)
     whole.names()
-    home.named = whole.named  # in all frames where the robot never comes
+    home.named = whole.named  # the same in all frames: where the robot never comes
     panels = [_panels(look, grid) for look in looks]
     shown = []
     for t, (look, panel) in enumerate(zip(looks, panels, strict=True)):
@@ -132,7 +132,7 @@ def save_gif(looks, world, grid, path):
 
 
 def _panels(look, grid):
-    """What a look is and says, in pictures: view, graph on labels, ranks, belief."""
+    """What a look shows and says, in pictures: view, graph on labels, ranks, belief."""
     return (draw.view(look.view, VIEW_PX), draw.graph(look.graph, draw.labels(look.labels, VIEW_PX), full=False),
             draw.ranks(grid, look.states, look.place, 6, VIEW_PX),
             draw.ranks(grid, look.pooled, look.place, 6, VIEW_PX, ("rank", "place", "belief")))

@@ -18,7 +18,7 @@ from .terminal import Stage, count
 SHOWN = "SV", "MV", "Scan", "Ours", "DA", "Ours+", "Oracle"
 PAIRS = (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"), ("Scan", "MV"), ("Ours", "Scan"), ("Ours+", "MV"),
          ("Ours+", "Scan"), ("Ours+", "Ours"), ("Oracle", "Ours"))
-RESOLVED = 10, 5, 2.5, 1  # points, to be told apart
+RESOLVED = 10, 5, 2.5, 1  # differences to be shown, in points
 FEW_CELLS = 10
 T_XY = "t_xy_m", "T_xy {} m"
 
@@ -129,13 +129,13 @@ def means(results, methods):
 
 
 def methods_of(results):
-    """What was tested, in the order of the report: the known methods first, then planners of one's own."""
+    """What was tested, in the order of the report: the known methods first, then planners that a reader added."""
     there = right(results[0])
     return [*(name for name in SHOWN if name in there), *(name for name in there if name not in SHOWN)]
 
 
 def pairs_of(methods):
-    """Which methods are subtracted; a planner of one's own from chance and from the best fixed sequence."""
+    """Pairs (a, b) of methods for a - b; from a planner that a reader added, chance and the best fixed sequence."""
     pairs = [*PAIRS, *((name, other) for name in methods if name not in SHOWN for other in ("MV", "Scan"))]
     return [(a, b) for a, b in pairs if a in methods and b in methods]
 
@@ -154,7 +154,7 @@ def differences(results, methods):
 
 
 def papers_differences():
-    """The same of the paper's 75 cells, whose episodes are not known: only cells can be drawn again."""
+    """The same for the paper's 75 cells, whose episodes are not known: only cells can be resampled."""
     cells = table_1().values()
     rows = [[f"{a} - {b}", interval([(cell[a] - cell[b]) / 100 for cell in cells])]
             for a, b in (("MV", "SV"), ("Ours", "MV"), ("DA", "Ours"))]
@@ -162,7 +162,7 @@ def papers_differences():
 
 
 def power(results, methods):
-    """Episodes that resolve a difference, in pairs and not in pairs."""
+    """Episodes needed to show a difference, paired and unpaired."""
     rows = []
     for a, b in pairs_of(methods):
         first, second = (np.concatenate([right(result)[name] for result in results]).astype(float) for name in (a, b))
@@ -175,7 +175,7 @@ def power(results, methods):
 
 
 def locations(results, methods):
-    """Right answers if the bearing is not asked for, and what methods differ in then."""
+    """Right answers if the bearing does not count, and how much methods differ then."""
     def where(result):
         return right(result, "location")
 
@@ -197,7 +197,7 @@ def by_heart(results):
 
 
 def adaptation(results):
-    """How often each checkpoint was chosen, what that gained, and what a perfect choice would have."""
+    """How often each checkpoint was chosen, and how often it was best on the tests; what choosing gained."""
     chosen = np.array([adapted(result) for result in results])
     best = [best_checkpoint(result["checkpoints"]) for result in results]
     rows = [["chosen", *np.bincount(chosen, minlength=N_CHECKPOINTS)],
@@ -212,7 +212,7 @@ def adaptation(results):
 
 
 def cost(costs):
-    """Milliseconds a view by stage, the paper's beside them; memory, machine, versions."""
+    """Milliseconds per view by stage, the paper's beside them; memory, machine, versions."""
     views = sum(of_cell["views"] for of_cell in costs)
     stages = sorted({name for of_cell in costs for name in of_cell["of stages"]})
     ms = {name: 1000 * sum(of_cell["of stages"].get(name, 0) for of_cell in costs) / views for name in stages}

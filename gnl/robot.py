@@ -1,7 +1,7 @@
 """The robot: a disc that turns, goes forward and stops where it touches something.
 
-Contact is pymunk's own swept query: how far a point of its body gets along a line among obstacles that are thicker by
-the robot's radius, which is how far a disc gets among the obstacles.
+Contact is found by pymunk's own swept query: how far a point gets along a line among obstacles grown by the robot's
+radius, which is how far a disc gets among the obstacles themselves.
 
     action 0 turn left, 1 turn right, 2 forward
     pose (x [m], y [m], theta [rad]);  odometry (forward [m], turn [rad]): what the wheels report

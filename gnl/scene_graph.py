@@ -28,7 +28,7 @@ N_WORDS = N_CLASSES * N_SIZES * GRID * GRID
 
 @dataclass(frozen=True)
 class SceneGraphs:
-    """The graphs of B views, one behind the other; a batch of one is a graph.
+    """The graphs of B views, one after the other; a batch of one is a graph.
 
     By hand, three nodes in a row: SceneGraphs(words, boxes, np.array([[0, 1], [1, 2]]), np.array([0, 3]),
     np.array([0, 2])); boxes may hold anything, (N, 4): a GCN does not look at them.
@@ -44,7 +44,7 @@ class SceneGraphs:
         return len(self.starts) - 1
 
     def __getitem__(self, chosen):
-        """Graphs as of an array: that of a number, or those of a slice, a mask (B,) or numbers (n,) in their order."""
+        """Graphs chosen as in an array: one by its number, several by slice, mask (B,) or numbers (n,) in order."""
         chosen = np.atleast_1d(np.arange(len(self))[chosen])
         starts, nodes = _spread(self.starts[chosen], self.starts[chosen + 1])
         edge_starts, edges = _spread(self.edge_starts[chosen], self.edge_starts[chosen + 1])
@@ -54,14 +54,14 @@ class SceneGraphs:
 
 
 def _spread(begin, end):
-    """Ranges [begin, end) one behind the other: where each starts in the result (n + 1,), and the result."""
+    """Ranges [begin, end) one after the other: where each starts in the result (n + 1,), and the result."""
     count = end - begin
     starts = np.append(0, np.cumsum(count))
     return starts, np.arange(starts[-1]) + np.repeat(begin - starts[:-1], count)
 
 
 def join(parts):
-    """One batch of the graphs of several."""
+    """Several batches joined into one."""
     def starts(name):
         return np.append(0, np.concatenate([np.diff(getattr(part, name)) for part in parts]).cumsum())
 
@@ -99,8 +99,8 @@ def regions(labels):
     together. Regions come ordered by view, then by their first pixel, column by column.
     """
     B, H, W = labels.shape
-    columns = np.ascontiguousarray(labels.transpose(0, 2, 1)).ravel()  # one column below the other
-    begins = np.ones(len(columns) + H + 1, bool)  # whether a run begins at a pixel; behind the last column, too
+    columns = np.ascontiguousarray(labels.transpose(0, 2, 1)).ravel()  # one column after the other
+    begins = np.ones(len(columns) + H + 1, bool)  # whether a run begins at a pixel; past the last column, too
     np.not_equal(columns[1:], columns[:-1], out=begins[1:len(columns)])
     begins[::H] = True
     cuts = np.flatnonzero(begins[:len(columns) + 1])
@@ -110,7 +110,7 @@ def regions(labels):
     # CHOICE: pixels are connected by their sides (4-connected); the paper says only "part region".
 
     # A run touches the runs of the next column from the one beside its first pixel to the one beside its last. The
-    # latter is beside the first pixel of the run below, too, unless it ends just there: then that one is one too far.
+    # latter is also beside the pixel just below the run, unless it ends there: then the run beside that is one too far.
     beside = np.searchsorted(cuts, cuts + H, side="right") - 1
     first, last = beside[:-1], beside[1:] - begins[end + H]
     count = np.where(column % W < W - 1, last - first + 1, 0)
@@ -131,15 +131,15 @@ def regions(labels):
 
 
 def sparse(values, columns, starts, n_columns):
-    """A sparse matrix row by row: row i holds values[starts[i]:starts[i + 1]] in those columns (CSR)."""
-    # As int32: through longer numbers scipy would look every time, to see whether these would do.
+    """A sparse matrix row by row: row i holds values[starts[i]:starts[i + 1]], in the same slice of columns (CSR)."""
+    # As int32: scipy would scan longer integers every time, to see whether these would do.
     return csr_matrix((values, columns.astype(np.int32), starts.astype(np.int32)), (len(starts) - 1, n_columns))
 
 
 def word_of(label, boxes, size=(VIEW_PX, VIEW_PX)):
     """Word of each region: class (N,), boxes (N, 4) px of an image of that size -> (N,) in 0..269.
 
-    The image's own pixels are whole numbers, so a box or a centre just on a boundary is seen to be there.
+    In the image's own pixels all is in whole numbers, so a box or a centre just on a boundary is found to be there.
     """
     (x0, y0, x1, y1), (W, H) = boxes.T, size
     share = (x1 - x0) * (y1 - y0) * SIZE_UNIT  # S / S_o, times W H
@@ -157,12 +157,12 @@ def edges_of(boxes, starts):
     _, j = _spread(np.arange(1, len(boxes) + 1), np.arange(1, len(boxes) + 1) + following)
     a, b = boxes[i], boxes[j]
     gap = np.maximum(a[:, :2] - b[:, 2:], b[:, :2] - a[:, 2:]).clip(0)  # (x, y), 0 where they overlap
-    near = np.hypot(*gap.T) <= FARTHEST_EDGE_PX + 1e-9  # what rounding adds to 20
+    near = np.hypot(*gap.T) <= FARTHEST_EDGE_PX + 1e-9  # allow for rounding at just 20
     return np.stack([i[near], j[near]], 1)
 
 
 def unpack_words(words):
-    """What each word joins, the inverse of `word_of`: (N,) -> list of (class, size, location), each from 0 on."""
+    """The parts of each word, the inverse of `word_of`: (N,) -> list of (class, size, location), each from 0 on."""
     rest, location = np.divmod(words, GRID * GRID)
     label, size = np.divmod(rest, N_SIZES)
     return list(zip(label.tolist(), size.tolist(), location.tolist(), strict=True))

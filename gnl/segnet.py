@@ -10,8 +10,8 @@ predicts each of its 64 x 64 pixels.
     up      16 x 16 x 16 -> 16 x 16 x 64, the four quads of the square; added to a map of the stem, ReLU
     head    each quad, 16 -> 10 scores for each of its 4 pixels
 
-Maps lie in memory square by square, in it quad by quad: so neither down nor up moves anything. Scores and labels have
-class and pixel in front (`to_quads`).
+Maps lie in memory square by square, and each square quad by quad, so neither down nor up moves anything. Scores and
+labels have class and pixel as their first axes (`to_quads`).
 """
 
 from itertools import pairwise
@@ -37,8 +37,8 @@ from .nn import (
 )
 
 SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which nets like the paper's predict
-QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, read like a page
-WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid parts the cells of the one before
+QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, in reading order
+WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid divides the cells of the one before
 
 
 def new_params(rng, dtype=np.float32):
@@ -50,7 +50,7 @@ def new_params(rng, dtype=np.float32):
         if bias:
             params[f"{name}.b"] = np.zeros(shape[-1], dtype)
 
-    # Of several maps that are added up one has the bias.
+    # Of several maps that are summed, one has the bias.
     layer("stem", QUAD * 3, WIDTH, bias=False)
     layer("height", 1, WIDTH, gain=0.5)
     layer("down", QUAD * WIDTH, WIDTH)
@@ -70,11 +70,11 @@ def forward(params, rgb, learning=True):
     """Scores of each pixel, classes first and pixels as in `to_quads`; cache: those of the layers by name.
 
     rgb (B, 64, 64, 3) uint8 -> (10 classes, 4 pixels of a quad, B, 16, 16, 4 quads of a square)
-    learning : if not, no cache is kept, which would cost room near the processor
+    learning : if False, nothing is kept for `backward`: it would take room in the processor's cache
     """
     if rgb.dtype != np.uint8 or rgb.shape[3:] != (3,):
         raise ValueError(f"views: expected bytes (B, H, W, 3), found {rgb.dtype} {rgb.shape}")
-    (H, W), part = rgb.shape[1:3], 4 * max(GRIDS)  # squares of 4 x 4 pixels, as many a side as the finest grid
+    (H, W), part = rgb.shape[1:3], 4 * max(GRIDS)  # squares of 4 x 4 pixels, a multiple of the finest grid per side
     if H % part or W % part:
         raise ValueError(f"views: expected a height and a width that are multiples of {part}, found {H} x {W}")
     cache = {}
@@ -110,14 +110,14 @@ def forward(params, rgb, learning=True):
     for grid in reversed(GRIDS):  # the mean of a large cell is that of the small cells in it
         cells = keep(f"pool{grid}", pool_forward(cells, grid))
         maps.append(linear(f"pyramid{grid}", cells))
-    for large, small in pairwise(reversed(maps)):  # and what it hears, they hear, too
+    for large, small in pairwise(reversed(maps)):  # and what it hears, the small ones hear, too
         small += upsample_forward(large, small.shape[1] // large.shape[1])[0]
     heard = relu("pyramid", maps[0])
 
     joined = linear("fine", fine)
     joined += linear("up", heard).reshape(joined.shape)
     joined = relu("head", joined)
-    # Classes first: the loss and the best class then run along memory.
+    # Classes first: the loss and the best class then run over contiguous memory.
     scores = np.ascontiguousarray(params["head.w"].T) @ joined.reshape(-1, WIDTH).T
     scores += params["head.b"][:, None]
     scores = keep("head", (scores, (joined, params["head.w"])))
@@ -125,9 +125,9 @@ def forward(params, rgb, learning=True):
 
 
 def standardise(rgb, dtype=np.float32):
-    """Colours less the view's mean over its spread, quad by quad: (B, H, W, 3) uint8 -> (B, H / 4, W / 4, 4, 12)."""
+    """Colours minus the view's mean, over its spread, quad by quad: (B, H, W, 3) uint8 -> (B, H / 4, W / 4, 4, 12)."""
     B, H, W, _ = rgb.shape
-    # Of each quad the two rows, each two pixels and so six numbers that lie side by side.
+    # The two rows of each quad, each of two pixels and so of six numbers that lie side by side.
     order = np.arange(H * W // 2).reshape(H // 4, 2, 2, W // 4, 2).transpose(0, 3, 1, 4, 2).ravel()
     flat = rgb.reshape(B, -1, 6).take(order, 1).reshape(B, -1).astype(dtype)
     flat -= np.einsum("bi->b", flat)[:, None] / flat.shape[1]  # many times faster than `mean`
@@ -177,7 +177,7 @@ def backward(params, dscores, cache):
 
 
 def predict(params, rgb, chunk=8):
-    """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. So few at once stay near the processor."""
+    """Labels of each pixel: rgb (B, 64, 64, 3) uint8 -> (B, 64, 64) uint8. A chunk fits in the cache."""
     labels = np.empty(rgb.shape[:3], np.uint8)
     for i in range(0, len(rgb), chunk):
         scores, _ = forward(params, rgb[i:i + chunk], learning=False)
@@ -225,13 +225,13 @@ def accuracy(predicted, true):
 
 
 def to_quads(images):
-    """(B, H, W) -> (4, B, H / 4, W / 4, 4): pixel in its quad, view, square, quad in its square; four as on a page."""
+    """(B, H, W) -> (4, B, H / 4, W / 4, 4): pixel in its quad, view, square, quad in its square, in reading order."""
     B, H, W = images.shape
     return images.reshape(B, H // 4, 2, 2, W // 4, 2, 2).transpose(3, 6, 0, 1, 4, 2, 5).reshape(4, B, H // 4, W // 4, 4)
 
 
 def from_quads(quads):
-    """The way back: (4, B, h, w, 4) -> (B, 4 h, 4 w)."""
+    """The inverse: (4, B, h, w, 4) -> (B, 4 h, 4 w)."""
     _, B, h, w, _ = quads.shape
     pairs = np.stack([quads[::2], quads[1::2]], -1)  # left and right pixel of each quad's upper, then lower row
     fours = pairs.reshape(2, B, h, w, 2, 4).view(f"V{4 * quads.itemsize}")[..., 0]  # in a row of the image
@@ -244,7 +244,7 @@ def save(params, path, made_by):
 
 
 def load(path):
-    """Weights of a file of `save`, and what made them; ValueError if they do not fit this net."""
+    """Weights in a file written by `save`, and what made them; ValueError if they do not fit this net."""
     params, made_by = load_arrays(path)
     check_params(path, params, new_params(np.random.default_rng(0)))
     return params, made_by

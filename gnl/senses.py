@@ -25,7 +25,7 @@ class Senses:
     views: int = 0
 
     def look(self, poses, rng, wanted=None):
-        """What robots at `poses` (B, 3) see, as SceneGraphs; of those alone that are `wanted`, (B,) bool, if given."""
+        """What robots at `poses` (B, 3) see, as SceneGraphs; only of those `wanted`, (B,) bool, if given."""
         rgb, labels = self.timed("view", render, self.world, poses, rng, segnet.SIZE_PX, self.noise, wanted)
         if self.net is not None:
             labels = self.timed("labels", segnet.predict, self.net, rgb)
@@ -33,20 +33,20 @@ class Senses:
         return self.timed("graph", scene_graph, labels)
 
     def look_around(self, poses, rng, progress=None, at_once=128):
-        """The same for any number of poses, some at once; progress(share done)."""
+        """`look` for any number of poses, `at_once` at a time; progress(share done) after each."""
         parts = []
-        for i in range(0, max(1, len(poses)), at_once):  # one look even of no poses
+        for i in range(0, max(1, len(poses)), at_once):  # one look even if there are no poses
             parts.append(self.look(poses[i:i + at_once], rng))
             if progress:
                 progress(min(1, (i + at_once) / max(1, len(poses))))
         return join(parts)
 
     def scores(self, poses, rng, wanted=None):
-        """Scores of all places for the view from each pose: (B, 3) -> (B, K); of the `wanted` poses alone, if given."""
+        """Scores of all places for the view from each pose: (B, 3) -> (B, K); only of the `wanted` poses, if given."""
         return self.timed("GCN", self.gcn.scores, self.look(poses, rng, wanted))
 
     def timed(self, stage, function, *args):
-        """function(*args), its time booked on `stage`."""
+        """function(*args), its time added to that of `stage`."""
         start = time.perf_counter()
         result = function(*args)
         self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - start

@@ -7,7 +7,7 @@ origin, x ahead and y to the left, the ray of slope s is p = (1, s) / w, and it 
 
 The footprint of a box is where two slabs near_k < n_k . p < far_k meet; n_k is an axis of the box, turned away from
 the camera. Where the camera is outside slab k (near_k > 0) it sees a face of the box: a ray enters by one of the at
-most two near lines that are faces, in columns that corners of the box bound, and leaves by the line of greatest w
+most two near lines that are faces, in the columns between corners of the box, and leaves by the line of greatest w
 among all others. (Slabs: Kay and Kajiya 1986; here in inverse depth.)
 
     B views   C columns   N boxes   V boxes in view, of all views   P crossings   k = 0, 1 axis of a box
@@ -79,19 +79,19 @@ def cast(world, poses, n_columns=512):
     begin, end = _columns_of_faces(axes, near, far, C)
     near_lines, far_lines = axes / near, axes / far  # (a, b) of both axes, (2, 2, V)
     exits = np.concatenate([far_lines, near_lines * ~outside], 1).transpose(1, 0, 2)
-    # A box around the camera shows no face: its first stands in, where all is cut off.
+    # A box around the camera shows no face: its first one stands in, at the distance where all is cut off.
     inside = ~(outside[0] | outside[1])
     near_lines[:, 0, inside] = [[1 / NEAREST_M], [0]]
 
-    # Faces that fill a column at least, face k of box v in view as k * V + v; those of full-height walls first.
+    # Faces that fill at least one column, face k of box v in view as k * V + v; those of full-height walls first.
     closes = ((world.z[:, 0] <= 0) & (world.z[:, 1] >= world.wall_height)).take(box)
     walls, others = np.flatnonzero((end > begin) & closes), np.flatnonzero((end > begin) & ~closes)
     face = np.append(walls, others)
     a, b = near_lines[0].take(face), near_lines[1].take(face)
     seen, begin, count = face - V * (face >= V), begin.take(face), (end - begin).take(face)
 
-    # Each face becomes one crossing for each of its columns: all that is the face's is repeated, and the rays, which
-    # for the face begin at view * C + begin, count on from crossing to crossing.
+    # Each face becomes one crossing for each of its columns: what belongs to the face is repeated, and its rays,
+    # which begin at view * C + begin, count up from crossing to crossing.
     first_crossing = np.cumsum(count) - count
     ray = np.repeat(view.take(seen) * C + begin - first_crossing, count)
     ray += np.arange(len(ray))
@@ -150,7 +150,7 @@ def _columns_of_faces(axes, near, far, n_columns):
     x, y = along_0 * ahead[0] + along_1 * ahead[1], along_0 * left[0] + along_1 * left[1]
     front = x > IN_FRONT_M
     column = np.ceil((1 - y / np.where(front, x, 1) / rim_slope()) * C / 2 - 0.5)
-    # A corner behind the camera is out of view on its own side of the box, the one between as the outline goes.
+    # A corner behind the camera is out of view on its own side of the box; the middle one, on that of the end behind.
     first = np.where(ahead[0] * left[1] > ahead[1] * left[0], 0, C)
     behind = np.array([first, np.where(front[0], C - first, first), C - first])
     column = np.where(front, column, behind).clip(0, C).astype(int)
@@ -161,7 +161,7 @@ def _columns_of_faces(axes, near, far, n_columns):
 
 
 def _greatest(lines, seen, s):
-    """Greatest a + b s, and 0 at least, of the lines (n, 2, V) of some boxes at slopes s."""
+    """Greatest a + b s, at least 0, of the lines (n, 2, V) of some boxes at slopes s."""
     greatest = np.zeros(len(s))
     for a, b in lines:
         w = b.take(seen)

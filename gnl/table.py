@@ -1,4 +1,4 @@
-"""Table I: all cells on all cores, each finished one a file; a run that was stopped goes on where it was."""
+"""Table I: all cells on all cores, one file per finished cell; a run that was stopped resumes where it was."""
 
 import os
 import sys
@@ -43,11 +43,11 @@ def add_arguments(parser):
     """Options of `python -m gnl table`."""
     parser.add_argument("--worlds", nargs="+", default=WORLDS, metavar="SEED", help="homes (800 801 809)")
     parser.add_argument("--gaps", nargs="+", metavar="M/DEG", help=f"T_xy/T_theta of {GAPS[0]} .. {GAPS[-1]} (all 25)")
-    parser.add_argument("--episodes", type=int, help="training episodes a cell (10000)")
-    parser.add_argument("--tests", type=int, help="test episodes a cell (100)")
+    parser.add_argument("--episodes", type=int, help="training episodes per cell (10000)")
+    parser.add_argument("--tests", type=int, help="test episodes per cell (100)")
     parser.add_argument("--noise", type=float, help="appearance noise of the views (1)")
-    parser.add_argument("--seed", type=int, default=0, help="(0)")
-    parser.add_argument("--repeats", type=int, default=1, help="cells of each kind, the seeds counted on (1)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the first cell of each kind (0)")
+    parser.add_argument("--repeats", type=int, default=1, help="cells of each kind, with consecutive seeds (1)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (one a core)")
     parser.add_argument("--dask", metavar="ADDRESS", help="run on the cluster of this dask scheduler instead")
     parser.add_argument("--out", default="out/table", help="folder of results (out/table)")
@@ -71,7 +71,7 @@ def run(args):
 def jobs_of(out, settings, cells, todo, n_processes, pool):
     """A job for each of the cells to do, home by home.
 
-    ValueError before the first of a home, if one that is done was made from another home, net or classifier
+    ValueError before the first job of a home, if a finished cell was made from another home, net or classifier
     """
     for world, senses in prepare(out, settings, todo, n_processes, pool):
         for cell in cells:
@@ -93,12 +93,12 @@ def check_parts(path, senses):
 def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
     """Hand jobs (name, function, *arguments) to the processes, and write each's outcomes and costs as they come.
 
-    jobs : may be made one by one; those that are there are worked on, and written, while the next one is made
+    jobs : may be a generator; those already made are run, and written, while the next one is made
     """
     waiting, faults, news = {}, [], threading.Event()
 
     def keep(future):
-        """Called by a thread of the pool when a job is done, whatever this one waits for."""
+        """Called by a thread of the pool when a job is done, whatever the main thread waits for."""
         try:
             path, (result, costs) = cell_path(out, waiting[future]), future.result()
             save_json(costs_path(path), costs)
@@ -127,7 +127,7 @@ def run_jobs(out, jobs, n_episodes, pool, name_of_stage):
 
 
 def check(args):
-    """Settings and cells of the command line; ValueError for what cannot be."""
+    """Settings and cells of the command line; ValueError for what is not possible."""
     settings = QUICK if args.quick else Settings()
     given = {name: getattr(args, name) for name in ("episodes", "tests", "noise") if getattr(args, name) is not None}
     settings = replace(settings, **given)
@@ -163,7 +163,7 @@ def gap_of(name):
 
 
 def agree(out, settings):
-    """ValueError if a folder of results has other settings; a run that was stopped at once left no results."""
+    """ValueError if a folder holds results of other settings; settings alone, of a run stopped early, may differ."""
     path = out / "settings.json"
     if path.exists():
         there = load_json(path, "settings")

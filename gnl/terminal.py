@@ -15,21 +15,21 @@ CLEAR = "\r\x1b[K"  # back to the start of a terminal's line, and wipe it
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser of command lines that complains in one line, and knows options by their whole names."""
+    """A parser of command lines that complains in one line, and accepts options by their full names only."""
 
     def __init__(self, **options):
         super().__init__(allow_abbrev=False, **options)
 
     def error(self, message):
         """End with exit status 2."""
-        self.exit(2, f"{self.prog}: {message} (--help tells more)\n")
+        self.exit(2, f"{self.prog}: {message} (see --help)\n")
 
 
 def command_line(program, description, commands, argv=None):
     """Run the command that the words `argv` name, one of {name: (module, what it does)}.
 
-    The module's add_arguments(parser) and run(args) are the command. The others are not imported: with SciPy and all
-    that draws, it would take most of a second until a program, or a process beside it, begins.
+    The module's add_arguments(parser) and run(args) are the command. The other modules are not imported: with SciPy
+    and all that draws, a program, or a process that it starts, would take most of a second to begin.
     """
     argv = sys.argv[1:] if argv is None else argv
     parser = Parser(prog=program, description=description)
@@ -85,7 +85,7 @@ class Stage:
             self.stream.flush()
 
     def done(self, text):
-        """Fix the line: the result and the time."""
+        """Finish the line with the result and the time."""
         self.stream.write(f"{self.clear}{self.name:<8} {text:<76} {self.seconds:5.1f} s\n")
         self.stream.flush()
 
@@ -94,7 +94,7 @@ class Stage:
 def processes(n):
     """An executor of n processes beside this one, for use in a with statement; whatever ends this one ends them too.
 
-    They only compute. Files are written by this process, so that nothing is left behind where another one is ended.
+    They only compute. Files are written by this process, so that nothing is left half-done where another one is ended.
     """
     here = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C is for the first process to handle
     try:
@@ -142,7 +142,7 @@ def executor(n_processes, address=None):
 
 
 def _is_there():
-    """For a cluster to call: whoever can has gnl."""
+    """For a cluster to call: a worker that can has gnl."""
     return True
 
 
@@ -162,7 +162,7 @@ def guarded(program, run, *args):
     status, line = 0, None
     try:
         run(*args)
-    except BrokenPipeError:  # who reads the output has read enough: `... | head`
+    except BrokenPipeError:  # whoever reads the output has read enough: `... | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(128 + signal.SIGPIPE)
     except (ValueError, OSError, MemoryError) as error:

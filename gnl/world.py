@@ -26,11 +26,11 @@ LEAF_THICKNESS_M = 0.04
 THINNEST_M = 0.01  # a picture without depth still has two sides
 ROBOT_RADIUS_M = 0.2
 ROBOT_HEIGHT_M = 1.35  # the camera's 1.25 m and a little more: what hangs higher is no obstacle
-LEAST_FREE = 1e-3  # share of a home's bounds; with less there is no use in drawing on
-STEP_M = 0.05  # what is flatter is driven over: a carpet
+LEAST_FREE = 1e-3  # share of a home's bounds; with less it is no use to go on drawing poses
+STEP_M = 0.05  # what is flatter is driven over, such as a carpet
 
 # Colours by class, for what bears none of its own: a mean, how far objects stray from it in brightness, and in hue.
-# They overlap, `other` with all of them: the words of a view are learned, not looked up.
+# They overlap, `other` with all of them: the labels of a view are learned, not looked up.
 COLOUR_MEAN = np.array([[.80, .77, .70], [.52, .41, .30], [.93, .93, .90], [.48, .58, .80], [.68, .45, .20],
                         [.42, .20, .12], [.64, .28, .32], [.70, .82, .94], [.07, .07, .10], [.50, .54, .42]])
 BRIGHTNESS_STD = np.array([.05, .06, .02, .09, .07, .05, .09, .04, .02, .16])
@@ -124,14 +124,14 @@ class World:
         return poses[:n]
 
     def _carries(self):
-        """Which boxes have something above their top, as far as rectangles around their outlines tell: (N,) bool."""
+        """Which boxes have something above their top, judged by axis-parallel rectangles around them: (N,) bool."""
         reach = abs(np.cos(self.angle)) * self.half.T + abs(np.sin(self.angle)) * self.half.T[::-1]  # along x and y
         near = [abs(np.subtract.outer(c, c)) < np.add.outer(r, r) for c, r in zip(self.centre.T, reach, strict=True)]
         above = self.z[None, :, 0] > self.z[:, None, 1] - 0.01
         return (near[0] & near[1] & above).any(1)
 
     def _door(self, door, walls, wall_colour, rng):
-        """Boxes of a door: its leaf, shut or hinged at the segment's first end and turned to its left; the lintel."""
+        """Boxes of a door: its leaf, shut or swung to the left about the segment's first end; the wall above it."""
         segment, height = np.array(door["segment"], float), door.get("height", floor_plan.DOOR_HEIGHT_M)
         hinge, end = segment.reshape(2, 2)
         along = (end - hinge) / np.hypot(*(end - hinge))
@@ -139,7 +139,7 @@ class World:
         leads_out = not self.free_space.inside(middle + 0.4 * np.array([left, -left])).all()
         # CHOICE: a door of which the plan says nothing is open, but a front door is shut.
         is_open = (door.get("state") or ("closed" if leads_out else "open")) == "open"
-        # A segment along a wall is no gap: a folding door that stands open there. (One spot alone: a wall ends in it.)
+        # A segment along a wall is no gap but a folding door standing open. (One spot alone walled: a wall ends in it.)
         spots = hinge + np.array([[0.25], [0.5], [0.75]]) * (end - hinge)
         walled = box_distance(spots, *footprints(walls)).min(1) < 0.1
         folded = walled[1] and walled.sum() > 1
@@ -168,7 +168,7 @@ def _panel(segment, thickness, z0, z1, label, colour):
 
 
 def _colour(label, given, rng):
-    """The given RGB (0..255) or one drawn for the class, in 0..1. Draws in any case, so neighbours keep theirs."""
+    """The given RGB (0..255) or one drawn for the class, in 0..1. Draws in any case, so later ones keep theirs."""
     drawn = COLOUR_MEAN[label] + BRIGHTNESS_STD[label] * rng.normal() + HUE_STD[label] * rng.normal(size=3)
     drawn = drawn.clip(0.03, 0.97)
     return drawn if given is None else np.array(given) / 255

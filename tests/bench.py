@@ -51,7 +51,7 @@ class Table:
         print(f"{'kernel':42}{'us':>9}  {'beside':38}{'us':>9}{'ratio':>8}{'goal':>7}{'stretch':>9}")
 
     def race(self, name, ours, n, *rivals):
-        """Time `ours`, n views a call, beside each rival: (name, function or None, its n, goal, stretch)."""
+        """Time `ours`, n views per call, beside each rival: (name, function or None, its n, goal, stretch)."""
         here = [rival[1:3] for rival in rivals if rival[1]]
         mine, *others = in_turns([(ours, n), *here])
         for rival, function, _, goal, stretch in rivals:
@@ -73,7 +73,7 @@ class Table:
 
 
 def in_turns(peers):
-    """Times of each (function, n) in microseconds per one of its n, round by round, each in turn: (peers, ROUNDS)."""
+    """Times of each (function, n) in microseconds per item, round by round, each in turn: (peers, ROUNDS)."""
     def seconds(function, repeat):
         start = time.process_time()
         for _ in range(repeat):

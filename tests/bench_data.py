@@ -1,4 +1,4 @@
-"""What bench.py measures on: rays in pymunk, ranks like those of a classifier, and a filter as one writes it first."""
+"""What bench.py measures on: rays in pymunk, ranks like a classifier's, and a filter as one writes it first."""
 
 import numpy as np
 import pymunk

@@ -101,18 +101,18 @@ def strewn(request):
 
 @pytest.fixture(scope="session", params=[FLAT, *FOUND], ids=lambda path: path.stem)
 def real_home_path(request):
-    """The flat that comes with gnl, and the homes beside the project where they are."""
+    """The flat that comes with gnl, and the homes beside the project, if they are there."""
     return request.param
 
 
 def full_disk(handle, mode):
-    """In the place of os.fdopen: a file for whose bytes there is no room."""
+    """Instead of os.fdopen: a file on a full disk."""
     os.close(handle)
     return open("/dev/full", mode)
 
 
 def begun_by_make(*words):
-    """The arguments of each program that `make` would begin with these words."""
+    """The arguments of each program that `make` with these words would start."""
     instead = "RUN=python3 -c 'import sys; print(sys.argv[1:])'"
     made = subprocess.run(["make", "--no-print-directory", "-o", ".venv/ready", instead, *words], capture_output=True,
                           text=True, check=True, cwd=Path(data_gen.__file__).parents[1])

@@ -93,7 +93,7 @@ def gcn_scores(params, words, edges):
 
 
 def belief(places, weights, n_places, pooling):
-    """Particles of one filter pooled to places: the sum or the greatest of their weights."""
+    """Particles of one filter pooled by place: the sum or the greatest of their weights."""
     pooled = [0.0] * n_places
     for place, weight in zip(places.tolist(), weights.tolist(), strict=True):
         pooled[place] = pooled[place] + weight if pooling == "sum" else max(pooled[place], weight)
@@ -139,7 +139,7 @@ class ExactBayes:
 
 
 class NNQL:
-    """A dictionary of values for each action, and a look at all its states for each question."""
+    """A dictionary of values for each action; each query looks at all its states."""
 
     def __init__(self, n_actions, k, alpha, gamma):
         self.pairs = [{} for _ in range(n_actions)]  # state as a tuple -> value, oldest first

@@ -157,7 +157,7 @@ def test_of_more_things_than_a_column_can_hold_the_nearest_are_seen():
 
 @pytest.mark.parametrize("n_steps", [32, 40, 80])
 def test_where_a_column_holds_no_more_no_ceiling_is_below_the_horizon_and_no_floor_above(n_steps):
-    """Stairs up to the camera, of each step the front and the top to be seen, and a wall behind."""
+    """Stairs up to the camera, the front and the top of each step in view, and a wall behind."""
     stairs = [thing("table", 2 + 0.03 * i, 2, 0.03, 3, 0.05 + 0.014 * i) for i in range(n_steps)]
     world = World(room(*stairs, size=(12.0, 4.0)))
     labels = true_labels(world, np.array([[1.0, 2.0, 0.0], [1.2, 2.0, -0.3]]), 512)

@@ -99,7 +99,7 @@ def test_checkpoints_cost_little_beside_the_states():
     ({"changed0": 1, "changed_to0": 1}, "changes counted"),
     ({"changed0": -2, "changed_to0": -2, "n_changed0": 0}, "checkpoint 0 lacks values")], ids=str)
 def test_a_file_whose_checkpoints_hold_more_or_less_than_they_count_is_refused(tmp_path, damage, words):
-    """Entries are taken off the end of an array, or added; or 2 are taken from its numbers."""
+    """Entries are removed from the end of an array, or added; or 2 is subtracted from its numbers."""
     store = lived(5)
     store.checkpoint()
     store.save(tmp_path / "nnql.npz", "a test")

@@ -72,7 +72,7 @@ def test_what_is_no_command_has_status_2(capsys, line):
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("python -m gnl")
-    assert err.endswith(" (--help tells more)\n")
+    assert err.endswith(" (see --help)\n")
     assert err.count("\n") == 1
 
 

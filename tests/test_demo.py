@@ -267,7 +267,7 @@ def test_labels_are_those_of_the_net_and_the_truth_and_ranks_mark_the_true_place
     assert marked == grid.place_of(start).tolist()
 
 
-def test_the_view_that_is_shown_has_most_to_see_of_those_that_the_net_gets_right_as_in_the_mean(
+def test_the_view_that_is_shown_has_most_to_see_of_those_that_the_net_gets_right_as_on_average(
         monkeypatch, tmp_path, two_rooms):
     """A net that takes all for a wall gets a bare wall right, most of the next view, least where most things are."""
     shown, home = [], demo.draw.home

@@ -1,4 +1,4 @@
-"""A cell: all methods from the same starts with the same luck, and of what it is a function."""
+"""A cell: all methods from the same starts with the same luck, and what it depends on."""
 
 import itertools
 import json

@@ -1,4 +1,4 @@
-"""Where a home is inside and where a disc has room, against exact distances and homes of which one knows it."""
+"""Where a home is inside and where a disc has room, against exact distances and homes where the answer is known."""
 
 import numpy as np
 import pymunk

@@ -15,7 +15,7 @@ NET = {"w": np.zeros(3)}
 
 @pytest.fixture
 def asked(monkeypatch):
-    """What the programs and learners, doubles all, are asked for; and what the file of views says of itself."""
+    """What the programs and learners, all test doubles, are asked for; and what the file of views says of itself."""
     asked = SimpleNamespace(drawn=[], net=[], gcn=[], status=0,
                             made_by={"homes": 105, "views": 106, "seed": 0, "noise": 104})
 

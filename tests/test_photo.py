@@ -1,4 +1,4 @@
-"""The photograph: clean without noise, the same for the same seed, and random alike whatever there is to see."""
+"""The photograph: clean without noise, the same for the same seed, its random numbers the same whatever is in view."""
 
 import numpy as np
 import pytest

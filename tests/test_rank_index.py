@@ -1,4 +1,4 @@
-"""The rank index gives the answers of brute force and of the KD-tree, small or dealt out into buckets."""
+"""The rank index gives the answers of brute force and of the KD-tree, on the pile or on the shelves."""
 
 import numpy as np
 import pytest

@@ -112,7 +112,7 @@ def test_a_little_training_halves_the_loss(views):
 
 
 def test_a_mirrored_view_has_mirrored_labels(monkeypatch):
-    """Grey as bright as its label says what each pixel should be called."""
+    """How bright a pixel's grey is says what its label should be."""
     labels = np.random.default_rng(0).integers(10, size=(16, 8, 8), dtype=np.uint8)
     labels[..., 0], labels[..., 7] = 0, 9
     shown, told = [], []

@@ -1,4 +1,4 @@
-"""The senses: their books, looks around, and looks that planners share."""
+"""The senses: their bookkeeping, looks around, and looks that planners share."""
 
 import itertools
 from types import SimpleNamespace

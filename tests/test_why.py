@@ -140,7 +140,7 @@ def test_a_program_takes_no_options_and_begins_nothing(tmp_path, name):
     done = subprocess.run([sys.executable, RESULTS / "why" / f"{name}.py", "--help"], cwd=tmp_path,
                           capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"{name}.py: expected no options, found --help (the head of the file tells more)\n"
+    assert done.stderr == f"{name}.py: expected no options, found --help (see the head of the file)\n"
     assert list(tmp_path.iterdir()) == []
 
 

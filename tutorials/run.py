@@ -2,8 +2,8 @@
 
     python tutorials/run.py [CHAPTER ...]        all chapters, a line each
 
-The first text fence after a python fence, and before the next, is its output; three dots in it stand for anything. What
-has none is run, and what it prints is not compared.
+The first text fence after a python fence, and before the next, is its output; three dots in it stand for anything. A
+python fence without one is run, but what it prints is not compared.
 """
 
 import contextlib

@@ -10,7 +10,7 @@ def counts():
 
 
 def belief_by_hand():
-    """Exercise 0.2: belief in A, B and C after the second view, three numbers, to two digits."""
+    """Exercise 0.2: belief in A, B and C after the second view, three numbers, to two decimal places."""
     raise NotImplementedError("exercise 0.2")
 
 

@@ -5,7 +5,7 @@ from grader import expect, main
 
 
 def numbers_of_places():
-    """Exercise 1.1: numbers of place classes of homes of 9.2 x 8.9 m, 12 x 10 m and 12.1 x 10 m; returns three ints."""
+    """Exercise 1.1: numbers of place classes in homes of 9.2 x 8.9 m, 12 x 10 m and 12.1 x 10 m; returns three ints."""
     raise NotImplementedError("exercise 1.1")
 
 

@@ -23,7 +23,7 @@ def linear_backward(dout, x, w):
 
 
 def loss_gradient(scores, labels):
-    """Exercise 4.3: gradient of the mean cross-entropy by the scores: (n, K), labels (n,) -> (n, K)."""
+    """Exercise 4.3: gradient of the mean cross-entropy with respect to the scores: (n, K), labels (n,) -> (n, K)."""
     raise NotImplementedError("exercise 4.3")
 
 

@@ -22,7 +22,7 @@ def backward(dout, H, A, W):
 
 
 def lookup_backward(dout, words, n_words):
-    """Exercise 6.4: gradient by W1 from dout (N, F), that by W1[words]: words (N,) -> (n_words, F)."""
+    """Exercise 6.4: gradient for W1 from dout (N, F), the one for W1[words]: words (N,) -> (n_words, F)."""
     raise NotImplementedError("exercise 6.4")
 
 

@@ -20,7 +20,7 @@ def ranks_of(scores):
 
 
 def swap_distance(i, j):
-    """Exercise 7.4: distance of two reciprocal-rank vectors if the places ranked i and j have changed roles."""
+    """Exercise 7.4: distance between two reciprocal-rank vectors that differ by a swap of the places ranked i and j."""
     raise NotImplementedError("exercise 7.4")
 
 

@@ -10,7 +10,7 @@ def predict_three_walks():
 
 
 def updated(q, reward, ahead, done, alpha, gamma):
-    """Exercise 9.2: Q(s, a) before, reward, Q-values of all actions in the next state (A,), bool -> Q(s, a) after."""
+    """Exercise 9.2: Q(s, a) before, reward, Q-values of all actions in the next state (A,), done -> Q(s, a) after."""
     raise NotImplementedError("exercise 9.2")
 
 
@@ -26,7 +26,7 @@ def distance_to_box(query, low, high):
 
 
 def most_in_common(K):
-    """Exercise 9.5: greatest dot product of two permutations of 1, 1/2, ..., 1/K, their 1 at different places."""
+    """Exercise 9.5: greatest dot product of two permutations of 1, 1/2, ..., 1/K with their 1s in different places."""
     raise NotImplementedError("exercise 9.5")
 
 

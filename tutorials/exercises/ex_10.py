@@ -5,10 +5,10 @@ from grader import expect, main
 
 
 def undone_by_chance():
-    """Exercise 10.1: of a planner of pure chance with the actions left, right, forward: (share, probability), 0..1.
+    """Exercise 10.1: for a planner that draws left, right or forward at random: (share, probability), 0..1.
 
     share of its pairs of successive actions that undo a turn; probability that four actions hold no such pair; both
-    to four digits at least
+    to at least four decimal places
     """
     raise NotImplementedError("exercise 10.1")
 
@@ -40,9 +40,9 @@ def cell_means(outcomes, drawn):
 
 
 def option_values(rewards, near, length):
-    """Exercise 10.5: V_L, the worth of n remembered steps of one action if it is gone on with: (n,).
+    """Exercise 10.5: V_L, the worth of n remembered steps of one action if it is repeated: (n,).
 
-    V_d of a step, d = 1 .. L, is its reward / L (always this L), and the mean of V_(d - 1) over the steps near it.
+    V_d of a step, d = 1 .. L, is its reward / L (always this L) plus the mean of V_(d - 1) over the steps near it.
 
     rewards (n,);  near (n, k) numbers of the steps whose states are nearest to the state after each;  length L >= 1
     """

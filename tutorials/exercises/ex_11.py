@@ -6,7 +6,7 @@ from grader import expect, main
 
 def acceptance(n_tests, area_m2, t_xy_m, t_theta_deg):
     """Exercise 11.1: forecast of the share of uniform poses beyond the gap, a float, by the exponential of the chapter,
-    and the draws wanted in the mean for 10,000 of them, a float: (share, draws)."""
+    and the draws needed on average for 10,000 of them, a float: (share, draws)."""
     raise NotImplementedError("exercise 11.1")
 
 

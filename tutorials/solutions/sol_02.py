@@ -17,7 +17,7 @@ def line_through(p, q):
 
 
 def cross(faces, others, s):
-    """In below all faces, out at the first of the others; behind the camera out comes first."""
+    """In at the least w of the faces, out at the greatest of the others; behind the camera, out comes first."""
     s = np.asarray(s, float)
     w_in = np.min([a + b * s for a, b in faces], axis=0)
     w_out = np.max([a + b * s for a, b in others], axis=0)

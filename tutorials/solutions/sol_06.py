@@ -18,7 +18,7 @@ def normalise(edges, n_nodes):
 
 
 def backward(dout, H, A, W):
-    """A factor changes sides of the sum of products by being transposed."""
+    """A factor moves to the other side of the sum of products by being transposed."""
     return A.T @ dout @ W.T, (A @ H).T @ dout, dout.sum(0)
 
 

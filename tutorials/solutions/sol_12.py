@@ -30,6 +30,6 @@ def log_words(counts, unseen=0.1):
 
 
 def from_zero_based(labels):
-    """As int, so that 255 + 1 does not turn round; then 256 is ADE20K's 0."""
+    """As int, so that 255 + 1 does not wrap round; then 256 is ADE20K's 0."""
     counted = np.asarray(labels).astype(int) + 1
     return from_ade20k(np.where(counted == 256, 0, counted))

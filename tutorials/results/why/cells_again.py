@@ -1,7 +1,7 @@
-"""Cells of the full run, once more: what they began with, for the programs beside this one.
+"""Cells of the full run, once more: what they began with, for the other programs in this folder.
 
-Homes, starts, net and classifiers are those of `make table`, in its folder out/table; what is not there yet is made,
-as the table would, and kept. What was measured is lost if a program is stopped.
+Homes, starts, net and classifiers are those of `make table`, in its folder out/table; what is not there yet is made
+as the table would make it, and kept. What was measured is lost if a program is stopped.
 """
 
 import os
@@ -50,7 +50,7 @@ def run(main):
     """main() as a program, which takes no options."""
     def alone():
         if sys.argv[1:]:
-            raise ValueError(f"expected no options, found {' '.join(sys.argv[1:])} (the head of the file tells more)")
+            raise ValueError(f"expected no options, found {' '.join(sys.argv[1:])} (see the head of the file)")
         main()
 
     guarded(Path(sys.argv[0]).name, alone)

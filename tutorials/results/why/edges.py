@@ -2,8 +2,8 @@
 
     python tutorials/results/why/edges.py
 
-Prints for each home, for the net's labels and for true ones, the share of 3000 new views whose place is the first:
-with edges, without, and the difference in pairs.
+Prints for each home, for the net's labels and for true ones, the share of 3000 new views whose place ranks first:
+with edges, without, and the paired difference.
 """
 
 from dataclasses import replace

@@ -3,7 +3,7 @@
     python tutorials/results/why/from_anywhere.py
 
 Prints a line for each cell. Of the first training: points ahead of MV from starts that it was trained on, from
-anywhere, and from the tests of the cell (each ten times, of which the mean counts), always with new luck. In the tests:
+anywhere, and from the tests of the cell (each ten times, averaged), always with new luck. In the tests:
 how often an action undoes the one before, how often actions drawn at random in the same shares would, and how often
 MV does. Of both: how often they choose alike in new views, and how often actions drawn at random would.
 """

@@ -7,7 +7,7 @@ and how often it goes forward; then three differences between plans. Then what Q
 are worth more to it than a step forward, and left than right, how much that varies from view to view (standard
 deviation), and how alike two trainings are in it (correlation).
 
-    turns     turn left or right by lot; "Ours, turns" by Q
+    turns     turn left or right at random; "Ours, turns" by Q
     k = 64    Ours with so many neighbours
     again     repeats a turn where it would undo it
     going on  chooses at the first view and does the same in every step
@@ -25,7 +25,7 @@ from gnl.robot import FORWARD, LEFT, N_ACTIONS, RIGHT
 
 
 def turns(_step, states, rng):
-    """Left or right by lot: 0 or 1."""
+    """Left or right at random: 0 or 1."""
     return rng.integers(2, size=len(states))
 
 
@@ -47,7 +47,7 @@ def again(plan):
 
 
 def measure(i, task, starts):
-    """Of each plan the right answers (n,) and how often it goes forward; numbers of Q, for turns and for left."""
+    """For each plan the right answers (n,) and how often it goes forward; numbers of Q, for turns and for left."""
     (senses, _, grid), rng = task, np.random.default_rng((5, i))
     stores = [episode.train_nnql(*task, starts["training"], seed) for seed in (21, 22)]
     wide = episode.train_nnql(*task, starts["training"], 21, store=NNQL(grid.n_places, N_ACTIONS, k=64))

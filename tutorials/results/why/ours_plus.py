@@ -4,7 +4,7 @@
 
 Prints by how much each plan is ahead of Scan and of Ours+, and how often an action undoes the one before.
 
-    Ours, drawn    NNQL whose means are drawn to those of step and last action (open_points.md)
+    Ours, drawn    NNQL whose means are drawn towards those of step and last action (open_points.md)
     anew           Ours+ that decides anew after every look
     belief         learns from the belief in the true place instead of 1 / rank of the true place in the new view
     +1 and -1      learns from right and wrong
@@ -24,7 +24,7 @@ from gnl.experiment import RACE_STARTS
 from gnl.other_stores import Shrunk
 from gnl.robot import N_ACTIONS
 
-TIMES = 10  # each start of the tests is tested so often; the mean counts
+TIMES = 10  # runs from each start of the tests; their mean counts
 
 
 class By(options.Experience):
@@ -64,7 +64,7 @@ class InPairs:
 
 
 def measure(i, task, starts):
-    """Of the tests and of anywhere: of each plan the mean of right answers from each pose, and how much is undone."""
+    """From the tests and from anywhere: for each plan the share right from each pose, and the share undone."""
     (senses, _, grid), rng = task, np.random.default_rng((5, i))
     lived = options.Experience(), By(lambda look: look["belief"]), By(lambda look: np.where(look["right"], 1.0, -1.0))
 

@@ -17,7 +17,7 @@ from gnl.paper import WORLDS
 from gnl.places import PlaceGrid
 
 ALL = [Cell(world, m, deg, 0) for world in WORLDS for m in GAPS_M for deg in GAPS_DEG]
-TIMES = 10  # each start is tested so often
+TIMES = 10  # runs from each start of the tests
 
 
 def with_true_labels(senses, settings):
