@@ -89,7 +89,8 @@ def sections(results, costs, settings):
     yield "## What Ours knows by heart\n\n" + by_heart(results)
     yield "## Which checkpoint adaptation chose\n\n" + adaptation(results)
     yield ("![Lines: right answers by checkpoint, a chart for each home](curves.png)\n\n"
-           "*Right after the last look, by checkpoint: Ours with its interval; the others have no checkpoints.*")
+           "*Share of right answers after the last look: Ours by checkpoint, with its interval, and methods that have "
+           "no checkpoints.*")
     yield ("![Bars: how many cells chose each checkpoint](chosen.png)\n\n"
            "*In how many cells adaptation chose each checkpoint.*")
     yield "## What it costs\n\n" + cost(costs)
