@@ -159,27 +159,36 @@ class Map(Canvas):
 
     def _spots_of_names(self):
         """Middle [px], name and size of letters of each room, clear of other names and away from things and marks."""
-        w, named, marks = self.world, [], cKDTree(self.marks)
+        named, marks = [], cKDTree(self.marks)
         taken = np.empty((0, 2, 2))  # middle and half size [m] of the names that have a spot
-        for room in w.plan.get("rooms", []):
-            name, parts, every = str(room.get("type", "")), cover_polygon(room["polygon"]), w.spots_in(room)
-            middle = (np.min(room["polygon"], 0) + np.max(room["polygon"], 0)) / 2
+        for room in self.world.plan.get("rooms", []):
+            name, found = str(room.get("type", "")), None
             for px in NAME_PX, SMALL_PX:
-                size = np.array([text_width(name, px) / 2 + AIR_PX, px / 2 + AIR_PX]) / self.px_per_m
-                spots = every[(abs(every[:, None] - taken[:, 0]) > size + taken[:, 1]).any(2).all(1)]
-                if not len(spots):
-                    break  # no room for a name
-                along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * size * [1, 0]).reshape(-1, 2)
-                free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
-                free = free.reshape(-1, 7).min(1)
-                beyond = box_distance(along, *footprints(parts)).min(1).reshape(-1, 7).max(1)
-                best = (free - 2 * beyond - 0.05 * np.hypot(*(spots - middle).T)).argmax()
-                if not beyond[best]:
-                    break  # the name stays within its room
-            if len(spots):
-                taken = np.append(taken, [[spots[best], size]], 0)
-                named.append((self.at(spots[best]), name, px))
+                half = np.array([text_width(name, px) / 2 + AIR_PX, px / 2 + AIR_PX]) / self.px_per_m
+                spot, within = self._best_spot(room, half, taken, marks)
+                if spot is not None:
+                    found = spot, half, px
+                if within:
+                    break
+            if found:
+                spot, half, px = found
+                taken = np.append(taken, [[spot, half]], 0)
+                named.append((self.at(spot), name, px))
         return named
+
+    def _best_spot(self, room, half, taken, marks):
+        """Where in a room a name of this half size [m] stands best, and whether it stays within; None if nowhere."""
+        w, spots = self.world, self.world.spots_in(room)
+        spots = spots[(abs(spots[:, None] - taken[:, 0]) > half + taken[:, 1]).any(2).all(1)]
+        if not len(spots):
+            return None, False
+        middle = (np.min(room["polygon"], 0) + np.max(room["polygon"], 0)) / 2
+        along = (spots[:, None] + np.linspace(-1, 1, 7)[:, None] * half * [1, 0]).reshape(-1, 2)
+        free = np.minimum(box_distance(along, w.centre, w.half, w.angle).min(1), marks.query(along)[0])
+        free = free.reshape(-1, 7).min(1)
+        beyond = box_distance(along, *footprints(cover_polygon(room["polygon"]))).min(1).reshape(-1, 7).max(1)
+        best = (free - 2 * beyond - 0.05 * np.hypot(*(spots - middle).T)).argmax()
+        return spots[best], not beyond[best]
 
 
 def _ahead(theta):

@@ -255,6 +255,13 @@ def test_names_are_written_smaller_where_a_room_is_too_narrow_for_them():
     assert widths == {2.5: floor_map.NAME_PX, 1.2: floor_map.SMALL_PX, 0.9: floor_map.SMALL_PX}
 
 
+def test_a_name_that_has_no_spot_beside_another_one_is_written_smaller():
+    shared = {"type": "corridor", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    plan = floor_map.Map(World(room(size=(1.0, 6.0), rooms=[shared, shared])), 400, 380)
+    plan.names()
+    assert [px for *_, px in plan.named] == [floor_map.NAME_PX, floor_map.SMALL_PX]
+
+
 def test_names_of_rooms_stand_above_all_that_is_drawn(world):
     plan = floor_map.Map(world, 640)
     plan.names()
