@@ -127,7 +127,7 @@ def draw_gaps(rooms, rng):
         if not wall:
             continue
         _, _, length = direction(wall)
-        corridors_end = i == 1 and other == "living room" and length <= CORRIDOR_M[1]
+        corridors_end = i == 1 and other == "living room" and length < CORRIDOR_M[1] + 0.005  # whole centimetres
         if i == 0:
             gaps.append(Gap(part_of(wall, (length - DOOR_M) / 2, DOOR_M), i, j, "front door"))
         elif corridors_end or (kind in DAY and other in DAY and length > 1.5):

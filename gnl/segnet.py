@@ -37,6 +37,7 @@ from .nn import (
 )
 
 SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which nets like the paper's predict
+MEAN, SPREAD = 128, 50  # of the colours of all training views
 QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, in reading order
 WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid divides the cells of the one before
 
@@ -125,14 +126,13 @@ def forward(params, rgb, learning=True):
 
 
 def standardise(rgb, dtype=np.float32):
-    """Colours minus the view's mean, over its spread, quad by quad: (B, H, W, 3) uint8 -> (B, H / 4, W / 4, 4, 12)."""
+    """Colours minus MEAN, over SPREAD, quad by quad: (B, H, W, 3) uint8 -> (B, H / 4, W / 4, 4, 12)."""
     B, H, W, _ = rgb.shape
     # The two rows of each quad, each of two pixels and so of six numbers that lie side by side.
     order = np.arange(H * W // 2).reshape(H // 4, 2, 2, W // 4, 2).transpose(0, 3, 1, 4, 2).ravel()
-    flat = rgb.reshape(B, -1, 6).take(order, 1).reshape(B, -1).astype(dtype)
-    flat -= np.einsum("bi->b", flat)[:, None] / flat.shape[1]  # many times faster than `mean`
-    spread = np.sqrt(np.vecdot(flat, flat) / flat.shape[1])
-    flat *= 1 / (spread[:, None] + 1)  # a view of one colour stays at zero
+    flat = rgb.reshape(B, -1, 6).take(order, 1).astype(dtype)
+    flat -= MEAN
+    flat /= SPREAD
     return flat.reshape(B, H // 4, W // 4, 4, 12)
 
 
@@ -191,7 +191,7 @@ def predict(params, rgb, chunk=8):
 def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     """Fit `params` in place to views and their labels; half of the batches are seen mirrored.
 
-    The rate rises over the first 20th of the steps and falls along a cosine to 0: the last step changes nothing.
+    The rate rises over the first 20th of the steps and falls along a cosine to nearly 0.
     rgb (n, 64, 64, 3) uint8, labels (n, 64, 64) uint8; progress(share done, loss) is called after each batch
     """
     if not len(rgb) or labels.shape != rgb.shape[:3] or not np.issubdtype(labels.dtype, np.integer):
@@ -203,16 +203,16 @@ def train(params, rgb, labels, rng, epochs, batch=4, rate=8e-3, progress=None):
     adam, n_batches = Adam(params), len(rgb) // batch  # of an epoch; what is left over waits for another one
     for epoch in range(epochs):
         batches = rng.permutation(len(rgb))[:n_batches * batch].reshape(n_batches, batch)
-        for step, i in enumerate(batches, epoch * n_batches + 1):
+        for step, i in enumerate(batches, epoch * n_batches):
             x, y = rgb[i], labels[i]
             if rng.random() < 0.5:
                 x, y = x[:, :, ::-1], y[:, :, ::-1]
             scores, cache = forward(params, x)
             loss, dscores = softmax_cross_entropy(scores, to_quads(y), axis=0)
-            share = step / (epochs * n_batches)
+            share = (step + 0.5) / (epochs * n_batches)
             adam.step(backward(params, dscores, cache), rate * min(1, 20 * share) * (1 + np.cos(np.pi * share)) / 2)
             if progress:
-                progress(share, loss)
+                progress((step + 1) / (epochs * n_batches), loss)
 
 
 def accuracy(predicted, true):

@@ -7,7 +7,8 @@ boxes that cover it. Everything downstream (collision, rays, views) sees boxes o
     angle  (N,)   rad                    of its first side, counter-clockwise from +x
     z      (N, 2) m                      bottom and top
     label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1, as are floor_colour and ceiling_colour
-    blocks, carries (N,) bool            what a robot cannot pass; what has something standing on it or hanging above
+    blocks (N,) bool                     what a robot cannot pass
+    carries, covers (N,) bool            what has something standing on it or hanging above, and what has it below
     bounds (x0, y0, x1, y1) m            of the walls
 """
 
@@ -72,7 +73,7 @@ class World:
         self.half = self.half.clip(THINNEST_M / 2)
         self.z, self.label, self.colour = boxes[:, 5:7], boxes[:, 7].astype(np.uint8), boxes[:, 8:11]
         self.z[:, 1] = self.z[:, 1].clip(self.z[:, 0] + THINNEST_M)
-        self.carries = self._carries()
+        self.carries, self.covers = self._stacks()
         self.blocks = (self.z[:, 0] < ROBOT_HEIGHT_M) & (self.z[:, 1] > STEP_M)
         self.free_space.furnish(self.centre[self.blocks], self.half[self.blocks], self.angle[self.blocks])
 
@@ -123,12 +124,15 @@ class World:
                                  f"found {len(poses)} free among {drawn} points")
         return poses[:n]
 
-    def _carries(self):
-        """Which boxes have something above their top, judged by axis-parallel rectangles around them: (N,) bool."""
+    def _stacks(self):
+        """Which boxes have something above their top, and which below their bottom: (N,) bool each.
+
+        That is judged by axis-parallel rectangles around them.
+        """
         reach = abs(np.cos(self.angle)) * self.half.T + abs(np.sin(self.angle)) * self.half.T[::-1]  # along x and y
         near = [abs(np.subtract.outer(c, c)) < np.add.outer(r, r) for c, r in zip(self.centre.T, reach, strict=True)]
         above = self.z[None, :, 0] > self.z[:, None, 1] - 0.01
-        return (near[0] & near[1] & above).any(1)
+        return [(near[0] & near[1] & beyond).any(1) for beyond in (above, above.T)]
 
     def _door(self, door, walls, wall_colour, rng):
         """Boxes of a door: its leaf, shut or swung to the left about the segment's first end; the wall above it."""

@@ -64,16 +64,15 @@ def colours(rgb):
     return np.stack([segnet.from_quads(np.moveaxis(seen[..., c], -1, 0)) for c in range(3)], -1)
 
 
-def test_standardised_views_have_no_offset_and_no_gain_of_exposure():
-    rgb = np.random.default_rng(0).integers(100, size=(2, 16, 16, 3), dtype=np.uint8)
-    seen, spread = colours(rgb), rgb.std((1, 2, 3))
-    np.testing.assert_allclose(seen.mean((1, 2, 3)), 0, atol=1e-12)
-    np.testing.assert_allclose(seen.std((1, 2, 3)), spread / (spread + 1))
-    np.testing.assert_allclose(colours(rgb + np.uint8(90)), seen, atol=1e-12)
-    # The 1 in spread + 1 keeps a view of one colour finite; it costs 1 / spread of the gain.
-    np.testing.assert_allclose(colours(rgb * np.uint8(2)), seen, rtol=1 / spread.min())
-    assert not colours(np.full((1, 8, 8, 3), 7, np.uint8)).any()
-    np.testing.assert_allclose((seen * (spread + 1)[:, None, None, None])[1, 5, 3], rgb[1, 5, 3] - rgb[1].mean())
+def test_colours_are_on_one_scale_for_all_views():
+    rgb = np.random.default_rng(0).integers(256, size=(2, 16, 16, 3), dtype=np.uint8)
+    np.testing.assert_allclose(colours(rgb), (rgb - 128.0) / 50)
+
+
+def test_over_training_views_colours_have_mean_nothing_and_spread_one(views):
+    seen = colours(views[0])
+    assert abs(seen.mean()) < 0.2
+    assert 0.8 < seen.std() < 1.2
 
 
 def test_each_quad_knows_how_high_it_is():
@@ -82,8 +81,8 @@ def test_each_quad_knows_how_high_it_is():
     np.testing.assert_allclose(images, np.broadcast_to(np.repeat([1, .6, .2, -.2, -.6, -1], 2)[:, None], (1, 12, 20)))
 
 
-def test_of_a_blank_view_the_net_sees_the_heights_alone(params):
-    _, cache = segnet.forward(params, np.full((2, 16, 16, 3), 7, np.uint8))
+def test_of_a_view_of_the_mean_colour_the_net_sees_the_heights_alone(params):
+    _, cache = segnet.forward(params, np.full((2, 16, 16, 3), segnet.MEAN, np.uint8))
     fine, = cache["stem.relu"]
     expected = np.maximum(segnet.heights(4, np.float64) * params["height.w"] + params["height.b"], 0)
     np.testing.assert_allclose(fine, np.broadcast_to(expected, fine.shape))
@@ -148,12 +147,13 @@ def test_half_of_the_batches_are_mirrored_and_none_upside_down(no_net):
     assert 0.4 < np.mean(mirrored) < 0.6
 
 
-def test_the_rate_rises_over_the_first_20th_of_the_steps_and_falls_along_a_cosine_to_zero(no_net):
+def test_the_rate_rises_over_the_first_20th_of_the_steps_and_falls_along_a_cosine_to_nearly_zero(no_net):
     rgb = np.zeros((8, 8, 8, 3), np.uint8)
     segnet.train({}, rgb, rgb[..., 0], np.random.default_rng(0), epochs=20, batch=1, rate=0.5)
-    share = np.arange(1, 161) / 160
+    share = (np.arange(160) + 0.5) / 160
     falling = 0.25 * (1 + np.cos(np.pi * share))
-    np.testing.assert_allclose(no_net[1], np.append(np.arange(1, 9) / 8, np.ones(152)) * falling, atol=1e-12)
+    np.testing.assert_allclose(no_net[1], (20 * share).clip(max=1) * falling)
+    assert 0 < no_net[1][-1] < 1e-4
 
 
 def test_fewer_views_than_fill_a_batch_are_learned_from(no_net):

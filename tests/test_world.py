@@ -240,6 +240,13 @@ def test_what_stands_on_a_thing_or_hangs_above_it_is_carried_by_it(two_rooms):
     assert TV in two_rooms.label
 
 
+def test_what_stands_on_a_thing_or_hangs_above_it_has_it_below(two_rooms):
+    lintels = (two_rooms.label == WALL) & (two_rooms.z[:, 0] > 0)
+    assert two_rooms.covers[two_rooms.label == TV].all()
+    assert two_rooms.covers[lintels].all()  # doors' leaves
+    assert not two_rooms.covers[(two_rooms.label == WALL) & ~lintels].any()
+
+
 def test_free_poses_hang_together():
     plan = room()
     plan["walls"] += [[2, 0, 2, 4]]  # a small room that no door leads to

@@ -418,6 +418,14 @@ def test_rooms_of_the_day_lie_open_to_one_another_where_they_share_a_metre_and_a
     assert kinds.count("opening") == n_openings
 
 
+@pytest.mark.parametrize(("shared_m", "kind"), [(1.7, "opening"), (2.5, "door")])
+def test_a_corridor_as_wide_as_can_be_ends_in_the_living_room_too(shared_m, kind):
+    """Between 1.13 m and 2.83 m lie 1.7000000000000002 m."""
+    rooms = [("outside", (-1.0, 1.13, 0.0, 1.13 + 1.5)), ("corridor", (0.0, 1.13, 8.0, round(1.13 + shared_m, 2))),
+             ("living room", (8.0, 0.0, 12.0, 5.0))]
+    assert [gap.kind for gap in draw_gaps(rooms, np.random.default_rng(0))] == ["front door", kind]
+
+
 def furnished(monkeypatch, *lacking):
     """A home whose rooms hold one thing of each class, but in each draw of its furniture one is lacking; all asked."""
     lacking, asked = iter([*lacking, None]), []
