@@ -114,7 +114,7 @@ def _pile(world, strip, size):
     begin, end = np.minimum(front, back), np.maximum(front, back)
     # A top belongs right behind its front; but what stands on it comes between the two, and so does what is below a box
     # whose underside one sees. What begins where the top ends, a wall or the next piece of furniture, comes behind it.
-    # (Not done: under a thing that also carries something, what is below its top should come behind that, too.)
+    # (Not done: the top of a thing that carries something should still come before what stands under that thing.)
     between = np.where(from_above, world.carries, world.covers).take(capped_box)
     nearness = np.append(w, np.where(between, w_back + A_LITTLE, w_front))
 

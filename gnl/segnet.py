@@ -37,7 +37,7 @@ from .nn import (
 )
 
 SIZE_PX = 64  # DIFFERS: the net sees the view at 64 x 64 pixels, the stride at which nets like the paper's predict
-MEAN, SPREAD = 128, 50  # of the colours of all training views
+MEAN, SPREAD = 128, 50  # roughly those of the colours of training views
 QUAD = 4  # pixels in a quad, quads in a square: 2 x 2, in reading order
 WIDTH, BLOCKS, GRIDS = 16, 1, (1, 2, 4)  # each grid divides the cells of the one before
 

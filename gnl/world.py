@@ -8,7 +8,7 @@ boxes that cover it. Everything downstream (collision, rays, views) sees boxes o
     z      (N, 2) m                      bottom and top
     label  (N,) uint8  colour (N, 3)     class of CLASSES; RGB in 0..1, as are floor_colour and ceiling_colour
     blocks (N,) bool                     what a robot cannot pass
-    carries, covers (N,) bool            what has something standing on it or hanging above, and what has it below
+    carries, covers (N,) bool            what has something standing on it or hanging above; what has something below
     bounds (x0, y0, x1, y1) m            of the walls
 """
 

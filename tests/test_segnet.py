@@ -1,4 +1,4 @@
-"""The net's gradient is right in every parameter, it learns, and it is blind to the camera's exposure."""
+"""The net's gradient is right in every parameter, it learns, and it sees all views on one scale of colours."""
 
 from types import SimpleNamespace
 
@@ -104,9 +104,9 @@ def test_a_little_training_halves_the_loss(views):
                  progress=lambda share, loss: losses.append((share, loss)))
     assert [share for share, _ in losses] == [(i + 1) / 60 for i in range(60)]
     loss = [loss for _, loss in losses]
-    assert np.mean(loss[-8:]) < 0.5 * np.mean(loss[:4])  # measured: 0.25 to 0.32 with 4 seeds
+    assert np.mean(loss[-8:]) < 0.5 * np.mean(loss[:4])  # measured: 0.28 to 0.32 with 4 seeds
     right, iou = segnet.accuracy(segnet.predict(params, views[0]), views[1])
-    assert 0.6 < right <= 1  # measured: 0.72 to 0.76
+    assert 0.6 < right <= 1  # measured: 0.72 to 0.74
     assert 0.1 < iou < right
 
 

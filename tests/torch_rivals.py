@@ -34,8 +34,7 @@ class TorchNet:
     def forward(self, rgb):
         """Scores (B, 10, 64, 64)."""
         x = torch.from_numpy(rgb).permute(0, 3, 1, 2).float()
-        x = x - x.mean((1, 2, 3), keepdim=True)
-        x = x / ((x ** 2).mean((1, 2, 3), keepdim=True).sqrt() + 1)
+        x = (x - segnet.MEAN) / segnet.SPREAD
         height = torch.linspace(1, -1, x.shape[2] // 2)[None, None, :, None]
 
         def conv(name, x, padding=0, stride=1):
