@@ -29,11 +29,11 @@ PICTURES = {"1-home.png", "2-view.png", "3-labels.png", "4-strip.png", "5-graph.
 PARTS = ["gcn", "net", "nnql", "scan"]
 
 
-def start(out, views):
+def start(out, views, *options):
     """The demo in a process group of its own, as a terminal starts it; a warning is an error."""
     return subprocess.Popen(
         [sys.executable, "-W", "error", "-u", "-m", "gnl", "demo", "--plan", FLAT, "--views", views, "--out", out,
-         *SMALLEST], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+         *SMALLEST, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
 def end(process):
@@ -94,9 +94,10 @@ def runs(tmp_path_factory, views):
     The third finds an old picture in its way; the last, in this process, draws into a folder of its own.
     """
     out = tmp_path_factory.mktemp("demo") / "out"
-    interrupted = stop(start(out, views), signal.SIGINT, out, "net")
+    # What comes after the stop is long, or a busy machine would stop them too late.
+    interrupted = stop(start(out, views, "--gcn-views=20000"), signal.SIGINT, out, "net")
     interrupted.files = files(out)
-    killed = stop(start(out, views), signal.SIGKILL, out, "gcn")
+    killed = stop(start(out, views, "--episodes=50000"), signal.SIGKILL, out, "gcn")
     killed.files = files(out)
     (out / "demo").mkdir()
     (out / "demo" / "1-home.png").write_bytes(b"old")
