@@ -33,7 +33,8 @@ def start(out, views, *options):
     """The demo in a process group of its own, as a terminal starts it; a warning is an error."""
     return subprocess.Popen(
         [sys.executable, "-W", "error", "-u", "-m", "gnl", "demo", "--plan", FLAT, "--views", views, "--out", out,
-         *SMALLEST, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+         *SMALLEST, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))  # ignored in the background
 
 
 def end(process):
