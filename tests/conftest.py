@@ -1,12 +1,13 @@
 """Homes for the tests: one drawn by hand, one by a seed, one strewn at random, and the real ones.
 
-And what `make` would begin, and a disk that is full.
+And what `make` would begin, a process that heeds Ctrl-C, and a disk that is full.
 """
 
 import ast
 import copy
 import functools
 import os
+import signal
 import subprocess
 from pathlib import Path
 
@@ -117,6 +118,11 @@ def begun_by_make(*words):
     made = subprocess.run(["make", "--no-print-directory", "-o", ".venv/ready", instead, *words], capture_output=True,
                           text=True, check=True, cwd=Path(data_gen.__file__).parents[1])
     return [ast.literal_eval(line) for line in made.stdout.splitlines()]
+
+
+def heed_ctrl_c():
+    """For a new process: who starts the tests in the background of a script lets them ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import FLAT, begun_by_make
+from conftest import FLAT, begun_by_make, heed_ctrl_c
 from PIL import Image
 
 from data_gen.__main__ import main as draw_data
@@ -34,7 +34,7 @@ def start(out, views, *options):
     return subprocess.Popen(
         [sys.executable, "-W", "error", "-u", "-m", "gnl", "demo", "--plan", FLAT, "--views", views, "--out", out,
          *SMALLEST, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))  # ignored in the background
+        preexec_fn=heed_ctrl_c)
 
 
 def end(process):

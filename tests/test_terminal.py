@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from conftest import heed_ctrl_c
 
 from gnl import terminal
 from gnl.terminal import Stage, guarded, processes
@@ -233,10 +234,9 @@ RUN = """if True:
     "pool.map(time.sleep, [20] * 500_000, chunksize=100_000)"], ids=["none", "one", "more", "too large for a pipe"])
 @pytest.mark.parametrize("sign, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
 def test_who_stops_this_process_stops_the_others_too_without_many_words(sign, status, works):
-    # Who starts the tests in the background of a script lets them ignore Ctrl-C.
     with subprocess.Popen([sys.executable, "-c", RUN.replace("WORKS", works)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, start_new_session=True,
-                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as process:
+                          preexec_fn=heed_ctrl_c) as process:
         others = [int(pid) for pid in process.stdout.readline().split()]
         try:
             process.send_signal(sign)
