@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,12 @@ from gnl.table import GAPS, WORLDS
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "tutorials" / "results"
 REPORT = (RESULTS / "report.md").read_text()
+RUNS = RESULTS, RESULTS / "other_seeds"
+SAID_OF_FOUR_RUNS = (("README.md", "Ours - MV", "over four such runs by {} {};"),
+                     ("README.md", "Ours+ - Scan", "over all four, Ours+ - Scan is {} {}."),
+                     ("tutorials/results/README.md", "Ours - MV", "in this run and {} {} over four;"),
+                     ("tutorials/open_points.md", "Ours - MV", "over four such runs {}."),
+                     ("tutorials/10_active_localization.md", "Ours - MV", "(four runs: {})"))
 
 
 def row(text, first):
@@ -44,12 +52,12 @@ def test_every_cell_of_the_paper_is_there_at_its_scale():
         assert {len(look) for outcome in of["tests"].values() for look in outcome["place"]} == {100}
 
 
-@pytest.mark.parametrize("folder", [RESULTS, RESULTS / "seed1"], ids=lambda folder: folder.name)
-def test_the_cells_are_of_the_homes_that_are_drawn_today(folder):
-    homes = {world: digest(make_home(world).plan) for world in WORLDS}
-    cells = [json.loads(path.read_bytes()) for path in folder.glob("cells/*.json")]
-    assert len(cells) == 75
-    assert {(of["cell"]["world"], of["made from"]["home"]) for of in cells} == set(homes.items())
+def test_all_runs_are_of_the_homes_that_are_drawn_today_and_of_the_same_net_and_classifiers():
+    cells = [json.loads(path.read_bytes()) for folder in RUNS for path in folder.glob("cells/*.json")]
+    made_from = {(of["cell"]["world"], *(of["made from"][part] for part in ("home", "net", "gcn"))) for of in cells}
+    assert {made[:2] for made in made_from} == {(world, digest(make_home(world).plan)) for world in WORLDS}
+    assert len(made_from) == len(WORLDS)
+    assert len({net for _world, _home, net, _gcn in made_from}) == 1
 
 
 def test_the_report_is_what_the_cells_say(tmp_path):
@@ -76,19 +84,17 @@ def test_the_readme_says_what_the_report_says():
         assert numbers[1] == (row(papers, name)[0] if f"| {name} |" in papers.partition("\n## ")[0] else "")
 
 
-def test_what_is_said_of_seed_1_is_what_its_cells_say(tmp_path):
-    with pytest.raises(SystemExit) as exit:
-        main(["report", "--out", str(RESULTS / "seed1"), "--to", str(tmp_path)])
-    assert exit.value.code == 0
-    report, told = (tmp_path / "report.md").read_text(), (RESULTS / "README.md").read_text()
-    assert len(list((RESULTS / "seed1" / "cells").glob("*-seed1.json"))) == 75
-    for name in ("MV - SV", "Ours - MV", "DA - Ours", "Scan - MV", "Ours - Scan", "Ours+ - MV", "Ours+ - Scan"):
-        assert row(told, name)[:2] == [row(REPORT, name)[0], row(report, name)[0]]
-    for part, at in ((REPORT, 0), (report, 1)):
-        homes = row(part, "Ours - MV")[2:]
-        assert [row(told, f"Ours - MV, home {world}")[at] for world in (800, 801, 809)] == homes
-        assert row(told, "Ours - MV, location alone")[at] == row(part.partition("## The location alone")[2],
-                                                                 "Ours - MV")[1]
+def test_there_are_four_runs_and_what_pages_say_of_all_is_what_their_cells_say():
+    cells = {seed: {path.name.rpartition("-")[0] for folder in RUNS for path in folder.glob(f"cells/*-seed{seed}.json")}
+             for seed in range(4)}
+    assert len(cells[0]) == 75
+    assert cells[0] == cells[1] == cells[2] == cells[3]
+    printed = subprocess.run([sys.executable, RESULTS / "four_runs.py"], capture_output=True, text=True, check=True)
+    page = (RESULTS / "README.md").read_text()
+    assert re.search(r"four_runs\.py\n```\n\n```\n(.*?)```\n", page, re.DOTALL)[1] == printed.stdout
+    all_runs = {line[:28].strip(): line.split("   ")[-1] for line in printed.stdout.splitlines()}
+    for path, name, words in SAID_OF_FOUR_RUNS:
+        assert words.format(*all_runs[name].split(" ", 1)) in " ".join((ROOT / path).read_text().split()), path
 
 
 def test_what_pages_say_of_starts_of_training_is_in_the_report():
@@ -96,8 +102,3 @@ def test_what_pages_say_of_starts_of_training_is_in_the_report():
     mean, interval = row(part, "all")[1].split(" ", 1)
     for page in ("README.md", "tutorials/10_active_localization.md"):
         assert re.search(rf"{re.escape(mean)}\s+{re.escape(interval)}", (ROOT / page).read_text())
-    told = (RESULTS / "README.md").read_text().partition("**Ours does better where it learned.**")[2]
-    told = told.partition("\n\nThe wider")[0]
-    for name in ("all", "T_xy 0.2 m", "T_xy 0.6 m", "T_xy 1.0 m"):
-        tests, known, _, known_of_scan = row(part, name)
-        assert row(told, name) == [tests, known, known_of_scan]
