@@ -2,9 +2,9 @@
 
     python tutorials/results/four_runs.py
 
-Seed 0 is the full run, whose cells lie beside this file; those of seeds 1 to 3 are in other_seeds. Prints for pairs of
-methods the points in each run, in how many of the runs they show (their interval there leaves out zero), and the mean
-of all four with its interval, for which a cell is drawn with its four runs.
+Seed 0 is the full run, whose cells lie beside this file; those of seeds 1 to 3 are in other_seeds. Prints by how many
+points one method is ahead of another in each run, with a star where the run's own interval leaves out zero, and the
+mean of all runs with its interval: a bootstrap over the cells, each with the mean of its runs.
 """
 
 from functools import partial
@@ -13,26 +13,38 @@ from pathlib import Path
 import numpy as np
 
 from gnl.compare import in_points, over_cells
-from gnl.outcomes import from_training, gains, groups, right
-from gnl.report import PAIRS, T_XY, load
+from gnl.outcomes import from_training, gains, right
+from gnl.report import T_XY, load
 from gnl.terminal import guarded
 
 HERE = Path(__file__).parent
-ROWS = {**{f"{a} - {b}": (a, b, right) for a, b in PAIRS[:7]},
-        "Ours - MV, location alone": ("Ours", "MV", partial(right, what="location")),
-        "Ours - MV, training starts": ("Ours", "MV", from_training),
-        "Ours - Scan, training starts": ("Ours", "Scan", from_training)}
-BY_HOME = ("Ours - MV",)
-BY_T_XY = ("Ours - MV", "Ours+ - Scan", "Ours - MV, training starts", "Ours - Scan, training starts")
+HOME = "world", "home {}"
+ROWS = (("MV", "SV", "", right),  # one method, another, what is special, which answers; then what else to judge it by
+        ("Ours", "MV", "", right, HOME, T_XY),
+        ("DA", "Ours", "", right),
+        ("Scan", "MV", "", right),
+        ("Ours", "Scan", "", right),
+        ("Ours+", "MV", "", right),
+        ("Ours+", "Scan", "", right, T_XY),
+        ("Ours", "MV", ", location alone", partial(right, what="location")),
+        ("Ours", "MV", ", training starts", from_training, T_XY),
+        ("Ours", "Scan", ", training starts", from_training, T_XY))
 
 
-def line(name, runs, a, b, of):
-    """A line of text: method a - b in each run, given the results of its cells in the same order, and over all runs."""
-    by_run = np.array([gains(results, a, b, of) for results in runs])
-    alone = [over_cells(of_run, np.random.default_rng(0)) for of_run in by_run]
-    shown = sum(low > 0 or high < 0 for _, low, high in alone)
-    every = in_points(*over_cells(by_run.mean(0), np.random.default_rng(0)))
-    return f"{name:28}" + "".join(f"{100 * mean:+8.1f}" for mean, _, _ in alone) + f"{shown:7}   {every}"
+def interval(d):
+    """Mean and 95 % interval over cells (C,); what rounding leaves of a zero is zero."""
+    return np.round(over_cells(d, np.random.default_rng(0)), 9) + 0.0
+
+
+def line(name, d):
+    """Differences d (runs, cells) as words: the mean of each run, and of all with its interval."""
+    each = "".join(f"{100 * mean:+7.1f}{'*' if low > 0 or high < 0 else ' '}" for mean, low, high in map(interval, d))
+    return f"{name:28}{each}  {in_points(*interval(d.mean(0)))}"
+
+
+def where(result):
+    """What the cells of several runs have in common."""
+    return [result["cell"][name] for name in ("world", "t_xy_m", "t_theta_deg")]
 
 
 def main():
@@ -40,12 +52,18 @@ def main():
     results = [result for folder in (HERE, HERE / "other_seeds") for result in load(folder)[0]]
     seeds = sorted({result["cell"]["seed"] for result in results})
     runs = [[result for result in results if result["cell"]["seed"] == seed] for seed in seeds]
-    print(f"{'':28}" + "".join(f"  seed {seed}" for seed in seeds) + "  shown   all")
-    for name, row in ROWS.items():
-        print(line(name, runs, *row))
-        keys = [("world", "home {}")] * (name in BY_HOME) + [T_XY] * (name in BY_T_XY)
-        for part in zip(*(list(groups(of_run, *keys))[1:] for of_run in runs), strict=True):
-            print(line("  " + part[0][0], [of_run for _, of_run in part], *row))
+    for seed, run in zip(seeds, runs, strict=True):
+        if list(map(where, run)) != list(map(where, runs[0])):
+            raise ValueError(f"{HERE}: expected the {len(runs[0])} cells of seed {seeds[0]} for each seed, "
+                             f"found {len(run)} for seed {seed}, others or fewer")
+    print(f"{'':28}" + "".join(f" seed {seed} " for seed in seeds) + "  all")
+    for a, b, special, of, *parts in ROWS:
+        d = np.array([gains(run, a, b, of) for run in runs])
+        print(line(f"{a} - {b}{special}", d))
+        for key, words in parts:
+            values = np.array([result["cell"][key] for result in runs[0]])
+            for value in np.unique(values):
+                print(line("  " + words.format(value), d[:, values == value]))
 
 
 if __name__ == "__main__":
