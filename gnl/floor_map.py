@@ -51,8 +51,9 @@ class Map(Canvas):
         self.marks = np.append(self.marks, xy, 0)
         return self.at(xy)
 
-    def sight(self, pose, colour=ROBOT, farthest_m=9.0):
-        """What a robot at `pose` can see: its field of view as far as the walls."""
+    def sight(self, pose, colour=ROBOT):
+        """What a robot at `pose` can see: its field of view as far as the walls, at most as far as the home is wide."""
+        farthest_m = np.hypot(*np.subtract(self.world.bounds[2:], self.world.bounds[:2]))
         near = cast(self.world, np.array([pose]), 256).dense()[0][0]  # of each crossing; the last is usually a wall
         near = np.where(near < np.inf, near, -1).max(1, initial=-1)
         reach = np.where(near < 0, np.inf, near).clip(0, farthest_m)  # a ray that crosses nothing goes on

@@ -65,7 +65,7 @@ def run(args):
     if todo:
         with executor(args.jobs, args.dask) as pool:
             run_jobs(out, jobs_of(out, settings, cells, todo, args.jobs, pool), settings.episodes, pool, "table")
-    print(f"{count(len(cells), 'cell')} in {out / 'cells'}; `python -m gnl report --out {out}` says what they hold")
+    print(f"{count(len(cells), 'cell')} in {out / 'cells'}")
 
 
 def jobs_of(out, settings, cells, todo, n_processes, pool):

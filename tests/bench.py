@@ -2,8 +2,8 @@
 
 Times drift by a third from run to run, so what counts is the ratio: ours and its rivals take turns within one run,
 each long enough to find in the caches what it left there and not what the other did, and a row shows the medians. All
-times are microseconds of one processor per view, graph, query or filter. Nothing is asserted. Rivals that are not
-installed (`pip install -e .[bench]`) are not counted.
+times are microseconds of one processor per view, graph, query or filter. A row's goal is the ratio that we set out to
+reach, its stretch what we would rather reach. Nothing is asserted. Rivals that are not installed are not counted.
 """
 
 import importlib
@@ -68,8 +68,8 @@ class Table:
                                                          self.stretches + (ratio <= stretch))
 
     def end(self):
-        print(f"goal reached in {self.goals} of {self.rows} rows, stretch in {self.stretches}; "
-              f"not installed: {self.missing}")
+        print(f"goal reached in {self.goals} of {self.rows} rows, stretch in {self.stretches}; not installed: "
+              f"{self.missing}" + " (pip install -e .[bench])" * (self.missing > 0))
 
 
 def in_turns(peers):

@@ -444,14 +444,15 @@ def test_the_cell_and_the_petal_of_a_place_are_marked(world, grid):
     assert colour_at(plan.picture(), petal) != colour_at(floor_map.Map(world, 640, grid=grid).picture(), petal)
 
 
-def test_where_no_wall_ends_it_a_sight_goes_on_as_far_as_it_is_drawn(monkeypatch):
-    plan, drawn = room(size=(8.0, 4.0)), []
-    plan["walls"] = [wall for wall in plan["walls"] if not wall[0] == wall[2] == 8.0]  # no wall to the right
+@pytest.mark.parametrize(("end", "farthest"), [(True, 10.95), (False, np.hypot(12.0, 4.0))], ids=["walled", "open"])
+def test_a_sight_ends_at_the_walls_and_where_there_is_none_after_the_width_of_the_home(monkeypatch, end, farthest):
+    plan, drawn = room(size=(12.0, 4.0)), []
+    plan["walls"] = [wall for wall in plan["walls"] if end or not wall[0] == wall[2] == 12.0]
     home = floor_map.Map(World(plan), 640)
     monkeypatch.setattr(canvas.Canvas, "polygon", lambda _, points, *how: drawn.append(np.asarray(points)))
-    home.sight(np.array([4.0, 2.0, 0.0]), farthest_m=3.0)
-    reach = np.hypot(*(drawn[0][1:] - home.at([4.0, 2.0])).T) / home.px_per_m
-    assert reach[128] == pytest.approx(3.0)
+    home.sight(np.array([1.0, 2.0, 0.0]))
+    reach = np.hypot(*(drawn[0][1:] - home.at([1.0, 2.0])).T) / home.px_per_m
+    assert reach[128] == pytest.approx(farthest, abs=0.001)
     assert reach[0] == pytest.approx(1.95 * np.sqrt(2), abs=0.02)  # the wall aside
 
 

@@ -122,9 +122,7 @@ def test_two_processes_give_the_same_bytes_however_often_they_are_killed(referen
 def test_a_second_run_has_nothing_to_do(reference, capsys):
     before = {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
     assert main_here(reference.folder, "--jobs", 8) == 0
-    said = (f"2 cells in {reference.folder / 'cells'}; `python -m gnl report --out {reference.folder}` says what they "
-            "hold\n")
-    assert capsys.readouterr() == (said, "")
+    assert capsys.readouterr() == (f"2 cells in {reference.folder / 'cells'}\n", "")
     assert before == {path: path.stat().st_mtime_ns for path in reference.folder.glob("cells/*")}
 
 
